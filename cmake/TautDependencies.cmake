@@ -1,0 +1,26 @@
+# Every outside library of taut, with the Debian 12 package and version it was measured with.
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)  # libeigen3-dev 3.4.0
+# libmrpt-maps-dev, libmrpt-opengl-dev, libmrpt-tclap-dev 2.5.8
+foreach(lib core rtti containers system io serialization math poses obs maps img opengl tclap)
+  find_package(mrpt-${lib} 2.5 REQUIRED)
+endforeach()
+find_package(octomap 1.9 REQUIRED)      # liboctomap-dev 1.9.7
+find_package(NLopt 2.7 REQUIRED CONFIG) # libnlopt-cxx-dev 2.7.1
+find_package(nanoflann 1.4 REQUIRED)    # libnanoflann-dev 1.4.3
+find_package(tsl-robin-map 1.2 REQUIRED) # robin-map-dev 1.2.1
+find_library(OSMESA_LIBRARY OSMesa REQUIRED) # libosmesa6-dev 22.3.6
+find_path(OSMESA_INCLUDE_DIR GL/osmesa.h REQUIRED)
+
+# Strict warnings, on an interface target so that no directory forgets them.
+add_library(taut_options INTERFACE)
+target_compile_options(taut_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                       -Wold-style-cast -Woverloaded-virtual -Wconversion -Wno-sign-conversion)
+if(TAUT_WARNINGS_AS_ERRORS)
+  target_compile_options(taut_options INTERFACE -Werror)
+endif()
+if(TAUT_SANITIZE)
+  target_compile_options(taut_options INTERFACE -fsanitize=${TAUT_SANITIZE}
+                         -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(taut_options INTERFACE -fsanitize=${TAUT_SANITIZE})
+endif()

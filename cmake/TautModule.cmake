@@ -1,0 +1,40 @@
+# taut_add_module(name SOURCES ... [DEPENDS ...] [PRIVATE_DEPENDS ...])
+#
+# One library a module: headers in include/taut/<name>, sources in src. Stage modules depend on
+# taut::core and on outside libraries only; odometry alone joins them.
+function(taut_add_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  add_library(taut_${name} ${ARG_SOURCES})
+  add_library(taut::${name} ALIAS taut_${name})
+  target_include_directories(
+    taut_${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+                        $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(taut_${name} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS}
+                                                                  $<BUILD_INTERFACE:taut_options>)
+  set_target_properties(taut_${name} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
+                                                SOVERSION ${PROJECT_VERSION_MAJOR})
+  install(TARGETS taut_${name} EXPORT tautTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endfunction()
+
+# taut_add_app(name SOURCES ... DEPENDS ...): a program, thin over the modules.
+function(taut_add_app name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} taut_options)
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()
+
+# taut_add_test(name SOURCES ... [DEPENDS ...] [LABELS ...]): a GoogleTest program, one ctest entry a test.
+function(taut_add_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  add_executable(test_${name} ${ARG_SOURCES})
+  target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support)
+  target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gtest_main GTest::gmock
+                                             taut_options)
+  gtest_discover_tests(
+    test_${name}
+    TEST_PREFIX "${name}."
+    DISCOVERY_TIMEOUT 60
+    PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
+endfunction()

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/core/Geometry.h"
+#include "taut/core/Time.h"
+
+namespace taut
+{
+/** One reading of the IMU, in the body frame b (the IMU's own). */
+struct ImuSample
+{
+    Time t = 0;
+    Vector3d gyro = Vector3d::Zero();   //!< angular rate [rad/s]
+    Vector3d accel = Vector3d::Zero();  //!< specific force [m/s^2]; at rest R^T g, upwards
+};
+
+using ImuSamples = std::vector<ImuSample>;  //!< strictly increasing in time
+
+/** Continuous-time noise of an IMU (paper, equation 2). */
+struct ImuNoise
+{
+    double gyro = 2e-3;               //!< white noise density [rad/s/sqrt(Hz)]
+    double accel = 2e-2;              //!< white noise density [m/s^2/sqrt(Hz)]
+    double gyro_bias_walk = 1e-4;     //!< [rad/s^2/sqrt(Hz)]
+    double accel_bias_walk = 1e-3;    //!< [m/s^3/sqrt(Hz)]
+};
+}  // namespace taut

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "taut/core/Geometry.h"
+#include "taut/core/Imu.h"
+
+namespace taut
+{
+/** Backward preintegrated motion at one time t <= t_k (paper, equation 7), with its derivatives by the
+ * biases. All in the body frame at t_k; `gamma` = R_{b_t}^{b_k}. The integrals are signed: they run
+ * backward, so beta of a body at rest is -g d and alpha +1/2 g d^2. */
+struct MotionDelta
+{
+    Matrix3d gamma = Matrix3d::Identity();
+    Vector3d beta = Vector3d::Zero();   //!< [m/s]
+    Vector3d alpha = Vector3d::Zero();  //!< [m]
+
+    Matrix3d dtheta_dbg = Matrix3d::Zero();  //!< gamma(bg + d) = gamma Exp(dtheta_dbg d)
+    Matrix3d dbeta_dba = Matrix3d::Zero(), dbeta_dbg = Matrix3d::Zero();
+    Matrix3d dalpha_dba = Matrix3d::Zero(), dalpha_dbg = Matrix3d::Zero();
+};
+
+/** One knot of the chain: the (interpolated) sample there and the motion from t_k back to it. */
+struct ImuKnot
+{
+    ImuSample sample;
+    MotionDelta delta;
+};
+
+/** The motion between two scan ends as the IMU tells it, integrated from t_k backward to t_{k-1}. The
+ * whole chain is kept, so that the motion at any point's time costs one partial step. */
+class PreintegratedImu
+{
+   public:
+    std::vector<ImuKnot> knots;  //!< knots.front() at t_k, then backward in time to t_{k-1}
+    Vector3d bias_accel = Vector3d::Zero();  //!< biases that the chain was integrated with
+    Vector3d bias_gyro = Vector3d::Zero();
+
+    /** Covariance of (alpha, beta, theta) at t_{k-1} from the white noise; theta perturbs gamma on
+     * the right. */
+    Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();
+    /** Covariance of the change of (ba, bg) over the interval. */
+    Eigen::Matrix<double, 6, 6> bias_walk_covariance = Eigen::Matrix<double, 6, 6>::Zero();
+
+    Time end() const { return knots.front().sample.t; }    //!< t_k
+    Time begin() const { return knots.back().sample.t; }   //!< t_{k-1}
+    double duration() const { return toSeconds(end() - begin()); }  //!< [s]
+
+    /** The motion at time t, by one partial mid-point step from the next later knot. `hint` is the
+     * index of the knot to try first, and receives the one used: a walk through sorted times costs
+     * no search. Times outside [begin, end] are extrapolated from the nearest interval. */
+    MotionDelta at(Time t, std::size_t& hint) const;
+    MotionDelta at(Time t) const;
+};
+
+/** One backward mid-point step (paper, equation 8): the motion at `earlier` from the one at `later`,
+ * with its derivatives by the biases. */
+MotionDelta stepBackward(
+    const MotionDelta& at_later, const ImuSample& later, const ImuSample& earlier,
+    const Vector3d& bias_accel, const Vector3d& bias_gyro);
+
+/** First-order correction of a motion for biases other than those it was integrated with. */
+MotionDelta correctedForBias(
+    const MotionDelta& delta, const Vector3d& dbias_accel, const Vector3d& dbias_gyro);
+
+/** Linear interpolation between two samples. */
+ImuSample interpolate(const ImuSample& a, const ImuSample& b, Time t);
+}  // namespace taut

@@ -1,0 +1,68 @@
+#include "taut/core/PreintegratedImu.h"
+
+namespace taut
+{
+ImuSample interpolate(const ImuSample& a, const ImuSample& b, Time t)
+{
+    if (a.t == b.t) return a;
+    const double s = static_cast<double>(t - a.t) / static_cast<double>(b.t - a.t);
+    return {t, a.gyro + s * (b.gyro - a.gyro), a.accel + s * (b.accel - a.accel)};
+}
+
+MotionDelta stepBackward(
+    const MotionDelta& at_later, const ImuSample& later, const ImuSample& earlier,
+    const Vector3d& bias_accel, const Vector3d& bias_gyro)
+{
+    const double dt = toSeconds(later.t - earlier.t);
+    const MotionDelta& L = at_later;
+    const Vector3d rate = 0.5 * (later.gyro + earlier.gyro) - bias_gyro;
+    const Vector3d a_later = later.accel - bias_accel;
+    const Vector3d a_earlier = earlier.accel - bias_accel;
+
+    MotionDelta E;
+    const Matrix3d step = expSO3(-rate * dt);
+    E.gamma = L.gamma * step;
+    E.beta = L.beta - 0.5 * dt * (L.gamma * a_later + E.gamma * a_earlier);
+    E.alpha = L.alpha - 0.5 * dt * (L.beta + E.beta);
+
+    // The same recursion, differentiated by the biases.
+    E.dtheta_dbg = step.transpose() * L.dtheta_dbg + rightJacobianSO3(-rate * dt) * dt;
+    const Matrix3d turned_later = L.gamma * hat(a_later);
+    const Matrix3d turned_earlier = E.gamma * hat(a_earlier);
+    E.dbeta_dba = L.dbeta_dba + 0.5 * dt * (L.gamma + E.gamma);
+    E.dbeta_dbg = L.dbeta_dbg + 0.5 * dt *
+                                    (turned_later * L.dtheta_dbg + turned_earlier * E.dtheta_dbg);
+    E.dalpha_dba = L.dalpha_dba - 0.5 * dt * (L.dbeta_dba + E.dbeta_dba);
+    E.dalpha_dbg = L.dalpha_dbg - 0.5 * dt * (L.dbeta_dbg + E.dbeta_dbg);
+    return E;
+}
+
+MotionDelta correctedForBias(
+    const MotionDelta& delta, const Vector3d& dbias_accel, const Vector3d& dbias_gyro)
+{
+    MotionDelta c = delta;
+    c.gamma = delta.gamma * expSO3(delta.dtheta_dbg * dbias_gyro);
+    c.beta += delta.dbeta_dba * dbias_accel + delta.dbeta_dbg * dbias_gyro;
+    c.alpha += delta.dalpha_dba * dbias_accel + delta.dalpha_dbg * dbias_gyro;
+    return c;
+}
+
+MotionDelta PreintegratedImu::at(Time t, std::size_t& hint) const
+{
+    // Interval [knots[i+1], knots[i]] that holds t; the outermost ones reach on.
+    const std::size_t last = knots.size() - 2;
+    std::size_t i = hint < last ? hint : last;
+    while (i > 0 && t > knots[i].sample.t) --i;
+    while (i < last && t < knots[i + 1].sample.t) ++i;
+    hint = i;
+    if (t == knots[i].sample.t) return knots[i].delta;
+    const ImuSample at_t = interpolate(knots[i + 1].sample, knots[i].sample, t);
+    return stepBackward(knots[i].delta, knots[i].sample, at_t, bias_accel, bias_gyro);
+}
+
+MotionDelta PreintegratedImu::at(Time t) const
+{
+    std::size_t hint = 0;
+    return at(t, hint);
+}
+}  // namespace taut
