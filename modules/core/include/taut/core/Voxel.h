@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+
+/** \file Voxel.h
+ * Cells of a regular grid named by one integer, for hash tables. */
+namespace taut
+{
+/** Mixes the bits of an integer so that each depends on all (the finaliser of SplitMix64). */
+constexpr std::uint64_t mixBits(std::uint64_t x)
+{
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+}
+
+/** The voxel that holds a finite point, 21 bits a coordinate. `inverse_size` is 1 / edge [1/m].
+ * Points further than 2^20 voxels from the origin share the voxels at the border. */
+template <class Scalar>
+std::uint64_t voxelKey(const Eigen::Matrix<Scalar, 3, 1>& point, Scalar inverse_size)
+{
+    constexpr Scalar limit = (1 << 20) - 1;
+    std::uint64_t key = 0;
+    for (int i = 0; i < 3; i++)
+    {
+        Scalar cell = std::floor(point[i] * inverse_size);
+        cell = cell < -limit ? -limit : (cell > limit ? limit : cell);
+        key = key << 21 | static_cast<std::uint64_t>(static_cast<std::int64_t>(cell) + (1 << 20));
+    }
+    return key;
+}
+
+/** Hash of a voxel's key for hash tables. */
+struct VoxelHash
+{
+    std::size_t operator()(std::uint64_t key) const { return mixBits(key); }
+};
+}  // namespace taut
