@@ -1,0 +1,52 @@
+#pragma once
+
+#include <mrpt/3rdparty/tclap/CmdLine.h>
+
+#include <iostream>
+#include <stdexcept>
+#include <string>
+
+namespace taut
+{
+/** The program was called wrongly. */
+struct UsageError : std::runtime_error
+{
+    using std::runtime_error::runtime_error;
+};
+
+/** Parses the command line. False if that was all there was to do (--help, --version); throws
+ * UsageError where MRPT's TCLAP alone would print and return the same false. */
+inline bool parseCommandLine(TCLAP::CmdLine& cmd, int argc, char** argv)
+{
+    struct Output : TCLAP::StdOutput
+    {
+        void failure(TCLAP::CmdLineInterface& /*cmd*/, TCLAP::ArgException& e) override
+        {
+            throw UsageError(e.error() + " " + e.argId());
+        }
+    } output;
+    cmd.setOutput(&output);
+    return cmd.parse(argc, argv);
+}
+
+/** Calls `body` and gives the exit code: 0 done, 1 failed, 2 bad usage. */
+template <class Body>
+int runProgram(const std::string& name, Body body)
+{
+    try
+    {
+        body();
+        return 0;
+    }
+    catch (const UsageError& e)
+    {
+        std::cerr << name << ": " << e.what() << " (see " << name << " --help)\n";
+        return 2;
+    }
+    catch (const std::exception& e)
+    {
+        std::cerr << name << ": " << e.what() << "\n";
+        return 1;
+    }
+}
+}  // namespace taut

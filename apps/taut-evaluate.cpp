@@ -1,0 +1,78 @@
+/** taut-evaluate: scores an estimated trajectory against the truth.
+ * Exit codes: 0 scored, 1 failed or refused, 2 bad usage. */
+#include <iostream>
+#include <optional>
+
+#include "CommandLine.h"
+#include "taut/trajectory/Report.h"
+#include "taut/trajectory/TrajectoryFile.h"
+
+namespace
+{
+struct Options
+{
+    std::string truth, estimate;
+    bool json = false;
+    taut::ScoreOptions score;
+};
+
+taut::Alignment alignmentOf(const std::string& name)
+{
+    try
+    {
+        return taut::alignmentOf(name);
+    }
+    catch (const std::invalid_argument& e)
+    {
+        throw taut::UsageError(e.what());
+    }
+}
+
+/** Nothing if only help was asked for. */
+std::optional<Options> parse(int argc, char** argv)
+{
+    TCLAP::CmdLine cmd("Scores an estimated trajectory against the truth", ' ', "0.1");
+    TCLAP::ValueArg<std::string> truth("", "truth", "True trajectory (TUM)", true, "", "FILE", cmd);
+    TCLAP::ValueArg<std::string> estimate(
+        "", "estimate", "Estimated trajectory (TUM)", true, "", "FILE", cmd);
+    TCLAP::SwitchArg json("", "json", "Write JSON instead of a table", cmd);
+    TCLAP::ValueArg<std::string> alignment(
+        "", "align", "Alignment of the estimate to the truth: se3 (default), yaw or none", false,
+        "se3", "NAME", cmd);
+    TCLAP::ValueArg<double> min_coverage(
+        "", "min-coverage", "Share of the truth to be covered, else refused (default 0.5)", false,
+        0.5, "0..1", cmd);
+    TCLAP::ValueArg<int> min_poses(
+        "", "min-poses", "Poses to be scored, else refused (default 10)", false, 10, "N", cmd);
+    if (!taut::parseCommandLine(cmd, argc, argv)) return {};
+
+    Options options;
+    options.truth = truth.getValue();
+    options.estimate = estimate.getValue();
+    options.json = json.getValue();
+    options.score.alignment = alignmentOf(alignment.getValue());
+    options.score.min_coverage = min_coverage.getValue();
+    if (min_poses.getValue() < 0) throw taut::UsageError("--min-poses is negative");
+    options.score.min_poses = static_cast<std::size_t>(min_poses.getValue());
+    return options;
+}
+
+void run(const Options& options)
+{
+    const auto warn = [](const taut::Warning& w) { std::cerr << "warning: " << w.text << "\n"; };
+    const taut::Trajectory truth = taut::readTum(options.truth, warn);
+    const taut::Trajectory estimate = taut::readTum(options.estimate, warn);
+    const taut::Scores scores = taut::scoreTrajectory(truth, estimate, options.score);
+    std::cout << (options.json ? scoresAsJson(scores) : scoresAsText(scores));
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    return taut::runProgram(
+        "taut-evaluate",
+        [&]
+        {
+            if (const auto options = parse(argc, argv)) run(*options);
+        });
+}

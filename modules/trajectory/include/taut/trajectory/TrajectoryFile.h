@@ -1,0 +1,58 @@
+#pragma once
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "taut/core/Warning.h"
+#include "taut/trajectory/Trajectory.h"
+
+/** \file TrajectoryFile.h
+ * Text files of trajectories, in the conventions of the evo project:
+ * - TUM: `t x y z qx qy qz qw` a line, t in seconds, `#` starts a comment line;
+ * - KITTI: the upper 3x4 part of T_world_body, 12 numbers row by row a line, no stamps.
+ * Readers throw std::runtime_error naming file and line for anything malformed, not finite, not a
+ * rotation, or going backward in time. */
+namespace taut
+{
+/** Nanoseconds of a decimal text in seconds ("1700000000.123456789", "1.7e+09"), by integer
+ * arithmetic alone; digits past the ninth decimal are rounded, half away from zero. Throws
+ * std::invalid_argument if the text is no such number or does not fit. */
+Time parseSeconds(const std::string& text);
+
+/** The exact opposite: seconds with 9 decimals. */
+std::string formatSeconds(Time t);
+
+/** One line of a TUM file, without its end: position to 1e-9 m, quaternion to 1e-12 with qw >= 0.
+ */
+std::string tumLine(const StampedPose& pose);
+
+/** Reads a whole TUM file. A repeated stamp is dropped, with a warning (kind "repeated_stamp"): the
+ * first pose counts. */
+Trajectory readTum(const std::string& path, const WarningSink& warn = {});
+
+/** Writes a TUM file pose by pose, so that a long run needs no memory for it. Throws
+ * std::runtime_error if the file cannot be written, std::invalid_argument if time does not
+ * increase. Call close() to learn of a full disk: the destructor cannot tell. */
+class TumWriter
+{
+ public:
+    explicit TumWriter(const std::string& path);
+    void write(const StampedPose& pose);
+    void close();
+
+ private:
+    std::string path_;
+    std::ofstream file_;
+    bool any_ = false;
+    Time last_ = 0;
+};
+
+void writeTum(const std::string& path, const Trajectory& trajectory);
+
+/** Poses T_world_body of a KITTI file. */
+std::vector<Pose> readKitti(const std::string& path);
+
+/** Numbers with 12 decimals. */
+void writeKitti(const std::string& path, const std::vector<Pose>& poses);
+}  // namespace taut

@@ -1,0 +1,87 @@
+#include "taut/trajectory/Report.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace taut
+{
+namespace
+{
+using Json = nlohmann::ordered_json;
+
+template <class... Values>
+std::string format(const char* pattern, Values... values)
+{
+    char buffer[256];
+    std::snprintf(buffer, sizeof buffer, pattern, values...);
+    return buffer;
+}
+
+std::string row(const std::string& name, const char* unit, const Statistics& s)
+{
+    return format(
+        "%-24s %-5s %11.6f %11.6f %11.6f %11.6f %7zu\n", name.c_str(), unit, s.rmse, s.mean,
+        s.median, s.max, s.count);
+}
+
+Json toJson(const Statistics& s)
+{
+    return {
+        {"rmse", s.rmse},
+        {"mean", s.mean},
+        {"median", s.median},
+        {"max", s.max},
+        {"count", s.count}};
+}
+
+Json toJson(const Pose& T)
+{
+    Json rows = Json::array();
+    for (int i = 0; i < 3; i++) rows.push_back({T.R(i, 0), T.R(i, 1), T.R(i, 2), T.p[i]});
+    return rows;
+}
+
+Json toJson(const Coverage& c)
+{
+    return {
+        {"share", c.share},
+        {"truth_span_s", c.truth_span},
+        {"late_start_s", c.late_start},
+        {"early_end_s", c.early_end},
+        {"largest_gap_s", c.largest_gap}};
+}
+}  // namespace
+
+std::string scoresAsText(const Scores& s)
+{
+    std::string out =
+        format("poses      %zu estimated, %zu with truth\n", s.estimate_poses, s.paired_poses);
+    out += format(
+        "coverage   %.1f %% of %.3f s; starts %.3f s late, ends %.3f s early, largest gap %.3f s\n",
+        100 * s.coverage.share, s.coverage.truth_span, s.coverage.late_start, s.coverage.early_end,
+        s.coverage.largest_gap);
+    out += format("path       %.3f m true, %.3f m estimated\n", s.truth_path, s.estimate_path);
+    out += format(
+        "alignment  %s\n\n%-24s %-5s %11s %11s %11s %11s %7s\n", nameOf(s.alignment).c_str(),
+        "error", "unit", "rmse", "mean", "median", "max", "count");
+    out += row("ATE position", "m", s.absolute.position);
+    out += row("ATE rotation", "deg", s.absolute.rotation_deg);
+    return out;
+}
+
+std::string scoresAsJson(const Scores& s)
+{
+    Json out;
+    out["truth_poses"] = s.truth_poses;
+    out["estimate_poses"] = s.estimate_poses;
+    out["paired_poses"] = s.paired_poses;
+    out["coverage"] = toJson(s.coverage);
+    out["truth_path_m"] = s.truth_path;
+    out["estimate_path_m"] = s.estimate_path;
+    out["alignment"] = nameOf(s.alignment);
+    out["T_truth_estimate"] = toJson(s.absolute.T_truth_estimate);
+    out["ate"]["position_m"] = toJson(s.absolute.position);
+    out["ate"]["rotation_deg"] = toJson(s.absolute.rotation_deg);
+    return out.dump(2) + "\n";
+}
+}  // namespace taut

@@ -1,0 +1,114 @@
+#include "taut/trajectory/Scores.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace taut
+{
+namespace
+{
+constexpr double kDegrees = 180 / M_PI;
+
+void refuseTooLittle(const Scores& scores, const ScoreOptions& options)
+{
+    char text[200];
+    if (scores.paired_poses < options.min_poses)
+    {
+        std::snprintf(
+            text, sizeof text,
+            "refused: only %zu of the estimate's %zu poses have a truth at their time, %zu are "
+            "needed",
+            scores.paired_poses, scores.estimate_poses, options.min_poses);
+        throw ScoreRefused(text);
+    }
+    if (scores.coverage.share < options.min_coverage)
+    {
+        std::snprintf(
+            text, sizeof text,
+            "refused: the estimate covers %.1f %% of the truth's %.3f s, %.1f %% are needed",
+            100 * scores.coverage.share, scores.coverage.truth_span, 100 * options.min_coverage);
+        throw ScoreRefused(text);
+    }
+}
+}  // namespace
+
+Statistics statisticsOf(std::vector<double> values)
+{
+    Statistics s;
+    s.count = values.size();
+    if (values.empty()) return s;
+    const double n = static_cast<double>(s.count);
+    double squares = 0;
+    for (const double v : values)
+    {
+        s.mean += v / n;
+        squares += v * v / n;
+    }
+    s.rmse = std::sqrt(squares);
+    std::sort(values.begin(), values.end());
+    s.median = (values[(s.count - 1) / 2] + values[s.count / 2]) / 2;
+    s.max = values.back();
+    return s;
+}
+
+AbsoluteError absoluteError(const PosePairs& pairs, Alignment alignment)
+{
+    AbsoluteError out;
+    out.T_truth_estimate = align(pairs, alignment);
+    std::vector<double> position, rotation;
+    for (const PosePair& pair : pairs)
+    {
+        const Pose error = pair.truth.inverse() * (out.T_truth_estimate * pair.estimate);
+        position.push_back(error.p.norm());
+        rotation.push_back(angleOf(error.R) * kDegrees);
+        out.errors.push_back({pair.t, position.back(), rotation.back()});
+    }
+    out.position = statisticsOf(std::move(position));
+    out.rotation_deg = statisticsOf(std::move(rotation));
+    return out;
+}
+
+Coverage coverageOf(const Trajectory& truth, const Trajectory& estimate, Duration max_gap)
+{
+    Coverage out;
+    if (truth.size() < 2) return out;
+    const Time begin = truth.front().t, end = truth.back().t;
+    out.truth_span = toSeconds(end - begin);
+    if (estimate.empty()) return out;
+    if (max_gap <= 0) max_gap = 3 * medianSpacing(estimate);
+    Duration covered = 0, largest = 0;
+    for (std::size_t i = 1; i < estimate.size(); i++)
+    {
+        const Duration spacing = estimate[i].t - estimate[i - 1].t;
+        largest = std::max(largest, spacing);
+        const Time a = std::max(begin, estimate[i - 1].t), b = std::min(end, estimate[i].t);
+        if (spacing <= max_gap && b > a) covered += b - a;
+    }
+    out.share = toSeconds(covered) / out.truth_span;
+    out.late_start = toSeconds(std::max<Duration>(0, estimate.front().t - begin));
+    out.early_end = toSeconds(std::max<Duration>(0, end - estimate.back().t));
+    out.largest_gap = toSeconds(largest);
+    return out;
+}
+
+Scores scoreTrajectory(
+    const Trajectory& truth, const Trajectory& estimate, const ScoreOptions& options)
+{
+    const PosePairs pairs = pairPoses(truth, estimate, options.max_truth_gap);
+    Scores scores;
+    scores.truth_poses = truth.size();
+    scores.estimate_poses = estimate.size();
+    scores.paired_poses = pairs.size();
+    scores.coverage = coverageOf(truth, estimate, options.max_estimate_gap);
+    refuseTooLittle(scores, options);
+    for (std::size_t i = 1; i < pairs.size(); i++)
+    {
+        scores.truth_path += (pairs[i].truth.p - pairs[i - 1].truth.p).norm();
+        scores.estimate_path += (pairs[i].estimate.p - pairs[i - 1].estimate.p).norm();
+    }
+    scores.alignment = options.alignment;
+    scores.absolute = absoluteError(pairs, options.alignment);
+    return scores;
+}
+}  // namespace taut

@@ -1,0 +1,253 @@
+#include "taut/trajectory/TrajectoryFile.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+
+namespace taut
+{
+namespace
+{
+constexpr Time kSecond = 1'000'000'000;
+
+std::vector<std::string> wordsOf(const std::string& line)
+{
+    constexpr const char* kBlank = " \t\r";
+    std::vector<std::string> words;
+    for (auto begin = line.find_first_not_of(kBlank); begin != std::string::npos;)
+    {
+        const auto end = line.find_first_of(kBlank, begin);
+        words.push_back(line.substr(begin, end - begin));
+        begin = line.find_first_not_of(kBlank, end);
+    }
+    return words;
+}
+
+/** By std::from_chars: independent of the locale. */
+double parseNumber(const std::string& word)
+{
+    const char* begin = word.data() + (word.front() == '+' ? 1 : 0);
+    const char* end = word.data() + word.size();
+    double value = 0;
+    const auto [stop, error] = std::from_chars(begin, end, value);
+    if (stop != end || (error != std::errc() && error != std::errc::result_out_of_range))
+        throw std::invalid_argument("'" + word + "' is not a number");
+    if (!std::isfinite(value)) throw std::invalid_argument("'" + word + "' is not finite");
+    return value;
+}
+
+std::string formatNumber(double value, int decimals)
+{
+    std::array<char, 400> buffer{};
+    const auto result = std::to_chars(
+        buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed, decimals);
+    return {buffer.data(), result.ptr};
+}
+
+/** Calls `body` with the words of every line that holds data; names file and line in its errors. */
+void forLines(
+    const std::string& path, std::size_t columns,
+    const std::function<void(const std::vector<std::string>&)>& body)
+{
+    std::ifstream file(path);
+    if (!file) throw std::runtime_error("cannot read '" + path + "'");
+    std::string line;
+    for (std::size_t number = 1; std::getline(file, line); number++)
+    {
+        const auto words = wordsOf(line);
+        if (words.empty() || words.front().front() == '#') continue;
+        try
+        {
+            if (words.size() != columns)
+                throw std::invalid_argument(
+                    std::to_string(columns) + " columns expected, found " +
+                    std::to_string(words.size()));
+            body(words);
+        }
+        catch (const std::invalid_argument& e)
+        {
+            throw std::runtime_error(path + ":" + std::to_string(number) + ": " + e.what());
+        }
+    }
+    if (file.bad()) throw std::runtime_error("error while reading '" + path + "'");
+}
+
+/** Files with few decimals are not quite unit: 1 % is allowed, and taken away. */
+Matrix3d rotationOf(double qx, double qy, double qz, double qw)
+{
+    const Eigen::Quaterniond q(qw, qx, qy, qz);
+    if (std::abs(q.norm() - 1) > 0.01)
+        throw std::invalid_argument(
+            "the quaternion has norm " + formatNumber(q.norm(), 6) + ", not 1");
+    return q.normalized().toRotationMatrix();
+}
+
+/** Digits of a decimal number without its point: value = digits * 10^exponent. */
+struct Decimal
+{
+    bool negative = false;
+    std::string digits;
+    int exponent = 0;
+};
+
+Decimal parseDecimal(const std::string& text)
+{
+    const auto fail = [&] { throw std::invalid_argument("'" + text + "' is not a time"); };
+    Decimal out;
+    std::size_t i = 0;
+    if (i < text.size() && (text[i] == '+' || text[i] == '-')) out.negative = text[i++] == '-';
+    bool point = false;
+    for (; i < text.size() && ((text[i] >= '0' && text[i] <= '9') || text[i] == '.'); i++)
+    {
+        if (text[i] != '.')
+        {
+            out.digits += text[i];
+            out.exponent -= point ? 1 : 0;
+        }
+        else if (point)
+            fail();
+        else
+            point = true;
+    }
+    if (out.digits.empty()) fail();
+    if (i == text.size()) return out;
+    if (text[i] != 'e' && text[i] != 'E') fail();
+    if (++i < text.size() && text[i] == '+') i++;
+    if (text[i - 1] == '+' && i < text.size() && text[i] == '-') fail();
+    int power = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data() + i, end, power);
+    if (error != std::errc() || stop != end || std::abs(power) > 1000) fail();
+    out.exponent += power;
+    return out;
+}
+}  // namespace
+
+Time parseSeconds(const std::string& text)
+{
+    const Decimal decimal = parseDecimal(text);
+    // The digits up to 1e-9 s are kept, the first one after them rounds.
+    const auto size = static_cast<std::int64_t>(decimal.digits.size());
+    const std::int64_t kept = size + decimal.exponent + 9;
+    Time ns = 0;
+    for (std::int64_t i = 0; i < kept; i++)
+    {
+        const int digit = i < size ? decimal.digits[static_cast<std::size_t>(i)] - '0' : 0;
+        if (ns > (std::numeric_limits<Time>::max() - digit - 1) / 10)
+            throw std::invalid_argument("time '" + text + "' is out of range");
+        ns = ns * 10 + digit;
+    }
+    if (kept >= 0 && kept < size && decimal.digits[static_cast<std::size_t>(kept)] >= '5') ns++;
+    return decimal.negative ? -ns : ns;
+}
+
+std::string formatSeconds(Time t)
+{
+    // Unsigned: the magnitude of the smallest Time has no signed counterpart.
+    const std::uint64_t magnitude =
+        t < 0 ? ~static_cast<std::uint64_t>(t) + 1 : static_cast<std::uint64_t>(t);
+    const std::string decimals = std::to_string(magnitude % kSecond);
+    return (t < 0 ? "-" : "") + std::to_string(magnitude / kSecond) + "." +
+           std::string(9 - decimals.size(), '0') + decimals;
+}
+
+std::string tumLine(const StampedPose& pose)
+{
+    Eigen::Quaterniond q(pose.T_world_imu.R);
+    q.normalize();
+    if (q.w() < 0) q.coeffs() = -q.coeffs();
+    std::string line = formatSeconds(pose.t);
+    for (int i = 0; i < 3; i++) line += " " + formatNumber(pose.T_world_imu.p[i], 9);
+    for (int i = 0; i < 4; i++) line += " " + formatNumber(q.coeffs()[i], 12);
+    return line;
+}
+
+Trajectory readTum(const std::string& path, const WarningSink& warn)
+{
+    Trajectory out;
+    forLines(
+        path, 8,
+        [&](const std::vector<std::string>& words)
+        {
+            const Time t = parseSeconds(words[0]);
+            std::array<double, 7> v{};
+            for (std::size_t i = 0; i < v.size(); i++) v[i] = parseNumber(words[i + 1]);
+            const Matrix3d R = rotationOf(v[3], v[4], v[5], v[6]);
+            if (!out.empty() && t < out.back().t)
+                throw std::invalid_argument(
+                    "time goes backward, from " + formatSeconds(out.back().t) + " to " +
+                    formatSeconds(t) + " s");
+            if (out.empty() || t > out.back().t)
+                out.push_back({t, {R, {v[0], v[1], v[2]}}});
+            else if (warn)
+                warn(
+                    {t, "repeated_stamp",
+                     path + ": a second pose at " + formatSeconds(t) + " s is dropped"});
+        });
+    return out;
+}
+
+TumWriter::TumWriter(const std::string& path) : path_(path), file_(path)
+{
+    if (!file_) throw std::runtime_error("cannot write '" + path + "'");
+    file_ << "# timestamp tx ty tz qx qy qz qw\n";
+}
+
+void TumWriter::write(const StampedPose& pose)
+{
+    if (any_ && pose.t <= last_)
+        throw std::invalid_argument(
+            path_ + ": pose at " + formatSeconds(pose.t) + " s follows one at " +
+            formatSeconds(last_) + " s");
+    any_ = true;
+    last_ = pose.t;
+    file_ << tumLine(pose) << '\n';
+}
+
+void TumWriter::close()
+{
+    file_.close();
+    if (!file_) throw std::runtime_error("cannot write '" + path_ + "' to its end");
+}
+
+void writeTum(const std::string& path, const Trajectory& trajectory)
+{
+    TumWriter writer(path);
+    for (const StampedPose& pose : trajectory) writer.write(pose);
+    writer.close();
+}
+
+std::vector<Pose> readKitti(const std::string& path)
+{
+    std::vector<Pose> out;
+    forLines(
+        path, 12,
+        [&](const std::vector<std::string>& words)
+        {
+            Eigen::Matrix<double, 3, 4> T;
+            for (int i = 0; i < 12; i++)
+                T(i / 4, i % 4) = parseNumber(words[static_cast<std::size_t>(i)]);
+            const Matrix3d R = T.leftCols<3>();
+            if ((R.transpose() * R - Matrix3d::Identity()).norm() > 0.01 || R.determinant() < 0)
+                throw std::invalid_argument("the left 3x3 part is not a rotation");
+            out.push_back({normalizedRotation(R), T.col(3)});
+        });
+    return out;
+}
+
+void writeKitti(const std::string& path, const std::vector<Pose>& poses)
+{
+    std::ofstream file(path);
+    if (!file) throw std::runtime_error("cannot write '" + path + "'");
+    for (const Pose& pose : poses)
+        for (int i = 0; i < 12; i++)
+            file << formatNumber(i % 4 < 3 ? pose.R(i / 4, i % 4) : pose.p[i / 4], 12)
+                 << (i < 11 ? ' ' : '\n');
+    file.close();
+    if (!file) throw std::runtime_error("cannot write '" + path + "' to its end");
+}
+}  // namespace taut
