@@ -5,6 +5,7 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)  # libeigen3-dev 3.4.0
 foreach(lib core rtti containers system io serialization math poses obs maps img opengl tclap)
   find_package(mrpt-${lib} 2.5 REQUIRED)
 endforeach()
+find_package(ZLIB 1.2 REQUIRED)          # zlib1g-dev 1.2.13
 find_package(octomap 1.9 REQUIRED)      # liboctomap-dev 1.9.7
 find_package(NLopt 2.7 REQUIRED CONFIG) # libnlopt-cxx-dev 2.7.1
 find_package(nanoflann 1.4 REQUIRED)    # libnanoflann-dev 1.4.3

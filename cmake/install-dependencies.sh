@@ -4,7 +4,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build pkg-config
   libeigen3-dev libmrpt-maps-dev libmrpt-opengl-dev libmrpt-tclap-dev
-  libnlopt-cxx-dev libnlopt-dev liboctomap-dev libosmesa6-dev libnanoflann-dev robin-map-dev
+  zlib1g-dev libnlopt-cxx-dev libnlopt-dev liboctomap-dev libosmesa6-dev libnanoflann-dev robin-map-dev
   libgtest-dev libgmock-dev libbenchmark-dev nlohmann-json3-dev
 )
 missing=()

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "taut/core/Imu.h"
+#include "taut/core/Scan.h"
+
+namespace taut
+{
+struct RawlogWriterConfig
+{
+    std::string lidar_label = "LIDAR";  //!< for scans without a label of their own
+    std::string imu_label = "IMU";
+    Pose T_vehicle_imu;  //!< sensorPose of the IMU
+};
+
+/** Writes an observation-only rawlog that MRPT's programs and RawlogSource read: CObservationIMU,
+ * and CObservationVelodyneScan with the cloud filled point by point. Compressed at level 1.
+ *
+ * What a rawlog can hold of a scan: times to 100 ns, intensities as whole numbers of 0 to 255
+ * (clamped), coordinates exactly; Scan::end becomes the time of the last point.
+ *
+ * The file appears under its name only at close(): whatever stops the writing before leaves nothing
+ * that looks like a complete log. */
+class RawlogWriter
+{
+ public:
+    /** Throws std::runtime_error naming the file if it cannot be written. */
+    explicit RawlogWriter(const std::string& path, const RawlogWriterConfig& config = {});
+    /** Without close(), what was written is removed. */
+    ~RawlogWriter();
+    RawlogWriter(const RawlogWriter&) = delete;
+    RawlogWriter& operator=(const RawlogWriter&) = delete;
+
+    /** Both throw std::runtime_error if the disk does not take it. */
+    void write(const ImuSample& sample);
+    void write(const Scan& scan);
+
+    /** Completes the file and gives it its name, replacing an older one. Throws std::runtime_error.
+     */
+    void close();
+
+ private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+}  // namespace taut

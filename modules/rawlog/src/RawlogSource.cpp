@@ -1,0 +1,391 @@
+#include "taut/rawlog/RawlogSource.h"
+
+#include <mrpt/obs/CObservationIMU.h>
+
+#include <algorithm>
+#include <deque>
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "ImuUnitCheck.h"
+#include "LabelExpression.h"
+#include "MrptConversion.h"
+#include "ObservationReader.h"
+#include "ObservationToScan.h"
+#include "SensorChoice.h"
+
+namespace taut
+{
+using mrpt::obs::CObservation;
+using mrpt::obs::CObservationIMU;
+
+namespace
+{
+constexpr Duration kLookahead = 2'000'000'000;   // in it the sensors must show up
+constexpr std::size_t kLookaheadCount = 20'000;  // whatever the stamps say
+constexpr Duration kDisorder = 1'000'000'000;    // between sensors, in the order of the file
+constexpr double kWorstBadShare = 0.05;          // of the points of a scan
+
+std::string seconds(Duration d)
+{
+    std::ostringstream s;
+    s.precision(6);
+    s << std::fixed << toSeconds(d) << " s";
+    return s.str();
+}
+
+const std::string& firstGiven(const std::string& a, const std::string& b)
+{
+    return a.empty() ? b : a;
+}
+
+bool describes(const std::string& rig_label, const std::string& label)
+{
+    return rig_label.empty() || std::regex_match(label, labelExpression(rig_label));
+}
+}  // namespace
+
+struct RawlogSource::Impl
+{
+    Impl(const RawlogConfig& c, WarningSink w)
+        : config(c),
+          sink(std::move(w)),
+          reader(c.path),
+          lidar("LiDAR", "--lidar-label", firstGiven(c.lidar_label, c.rig.lidar.label)),
+          imu("IMU", "--imu-label", firstGiven(c.imu_label, c.rig.imu.label))
+    {
+        lookAhead();
+        begin = progress.first + fromSeconds(config.from_time);
+        if (config.to_time < 1e9) end = progress.first + fromSeconds(config.to_time);
+    }
+
+    std::optional<Measurement> next();
+
+ private:
+    void lookAhead();
+    CObservation::Ptr read();
+    void account(const CObservation& observation);
+    void setBody(const CObservationIMU& observation);
+    std::optional<Measurement> convert(const CObservation& observation);
+    std::optional<Measurement> convertImu(const CObservationIMU& observation);
+    std::optional<Measurement> convertLidar(const CObservation& observation);
+    bool checkImuTime(Time t);
+    bool checkScanTime(const Scan& scan);
+    void checkPoints(const ScanBuilder& points, Time t);
+    Pose lidarPose(const CObservation& observation) const;
+    bool enoughScans() const;
+    bool beyondEnd(Time t) const;
+    void finish();
+    void warn(Time t, const std::string& kind, const std::string& text) const
+    {
+        if (sink) sink({t, kind, text});
+    }
+    void skip(Time t, const std::string& kind, const std::string& text)
+    {
+        progress.skipped++;
+        warn(t, kind, text + "; skipped");
+    }
+
+ public:
+    RawlogConfig config;
+    WarningSink sink;
+    ObservationReader reader;
+    SensorChoice lidar, imu;
+    RawlogProgress progress;
+
+ private:
+    std::deque<CObservation::Ptr> ahead;
+    std::optional<Pose> T_imu_vehicle;
+    ImuUnitCheck unit_check;
+    std::optional<Time> last_imu, last_scan, last_scan_end;
+    Time begin = 0, end = std::numeric_limits<Time>::max();
+    bool warned_undistorted = false, finished = false;
+};
+
+/* ---- reading ---- */
+
+/* Reads until the IMU's pose is known, which every scan needs, and far enough to find a second
+ * sensor of a kind before any work was done. */
+void RawlogSource::Impl::lookAhead()
+{
+    while (ahead.size() < kLookaheadCount)
+    {
+        auto observation = read();
+        if (!observation) break;
+        if (const auto* o = dynamic_cast<const CObservationIMU*>(observation.get()))
+            if (!T_imu_vehicle && imu.accepts(o->sensorLabel)) setBody(*o);
+        ahead.push_back(std::move(observation));
+        if (progress.now - progress.first > kLookahead) break;
+    }
+}
+
+CObservation::Ptr RawlogSource::Impl::read()
+{
+    auto observation = reader.next();
+    progress.bytes_read = reader.bytesRead();
+    progress.bytes_total = reader.bytesTotal();
+    if (observation) account(*observation);
+    return observation;
+}
+
+void RawlogSource::Impl::account(const CObservation& observation)
+{
+    progress.sensors[{observation.sensorLabel, observation.GetRuntimeClass()->className}]++;
+    if (isLidar(observation)) lidar.accepts(observation.sensorLabel);
+    if (dynamic_cast<const CObservationIMU*>(&observation)) imu.accepts(observation.sensorLabel);
+    progress.lidar_label = lidar.chosen().value_or("");
+    progress.imu_label = imu.chosen().value_or("");
+    if (observation.timestamp == INVALID_TIMESTAMP) return;
+    const Time t = toTime(observation.timestamp);
+    if (progress.first == 0) progress.first = progress.now = t;
+    progress.now = std::max(progress.now, t);
+}
+
+void RawlogSource::Impl::setBody(const CObservationIMU& observation)
+{
+    progress.has_imu = true;
+    Pose T_vehicle_imu = toPose(observation.sensorPose);
+    if (config.rig.imu.T_vehicle_imu && describes(config.rig.imu.label, observation.sensorLabel))
+        T_vehicle_imu = *config.rig.imu.T_vehicle_imu;
+    T_imu_vehicle = T_vehicle_imu.inverse();
+}
+
+std::optional<Measurement> RawlogSource::Impl::next()
+{
+    while (!finished)
+    {
+        CObservation::Ptr observation;
+        if (ahead.empty())
+        {
+            observation = read();
+        }
+        else
+        {
+            observation = std::move(ahead.front());
+            ahead.pop_front();
+        }
+        if (!observation)
+        {
+            finish();
+            break;
+        }
+        if (auto measurement = convert(*observation)) return measurement;
+    }
+    return {};
+}
+
+void RawlogSource::Impl::finish()
+{
+    finished = true;
+    if (!reader.damage().empty())
+        warn(
+            progress.now, "rawlog_truncated",
+            "'" + config.path + "' cannot be read on after " +
+                seconds(progress.now - progress.first) + " of log: " + reader.damage());
+    if (!lidar.chosen())
+    {
+        std::string found;
+        for (const auto& [sensor, observations] : progress.sensors)
+            found += " '" + sensor.first + "' (" + std::to_string(observations) + " " +
+                     sensor.second + ")";
+        throw std::runtime_error(
+            "no LiDAR " + std::string(lidar.byExpression() ? "of the label asked for " : "") +
+            "in '" + config.path + "'; sensors there:" + (found.empty() ? " none" : found));
+    }
+    if (!imu.chosen() && imu.byExpression())
+        warn(
+            progress.now, "no_imu",
+            "no IMU of the label asked for; labels of IMUs there: " + imu.describeSeen());
+}
+
+/* ---- conversion ---- */
+
+std::optional<Measurement> RawlogSource::Impl::convert(const CObservation& observation)
+{
+    const auto* as_imu = dynamic_cast<const CObservationIMU*>(&observation);
+    const bool mine = as_imu ? imu.chosen() == observation.sensorLabel
+                             : isLidar(observation) && lidar.chosen() == observation.sensorLabel;
+    const bool stamped = observation.timestamp != INVALID_TIMESTAMP;
+    if (stamped && beyondEnd(toTime(observation.timestamp)))
+    {
+        finish();
+        return {};
+    }
+    if (!mine) return {};
+    if (!stamped)
+    {
+        skip(
+            progress.now, "no_stamp",
+            "an observation of '" + observation.sensorLabel + "' has no time stamp");
+        return {};
+    }
+    return as_imu ? convertImu(*as_imu) : convertLidar(observation);
+}
+
+std::optional<Measurement> RawlogSource::Impl::convertImu(const CObservationIMU& observation)
+{
+    using namespace mrpt::obs;
+    ImuSample sample;
+    sample.t = toTime(observation.timestamp);
+    if (sample.t < begin) return {};
+    if (!T_imu_vehicle)
+    {
+        setBody(observation);
+        warn(
+            sample.t, "imu_late",
+            "the first IMU sample comes " + seconds(sample.t - progress.first) +
+                " into the log; scans before it were placed relative to the vehicle");
+    }
+    constexpr TIMUDataIndex accel[] = {IMU_X_ACC, IMU_Y_ACC, IMU_Z_ACC};
+    constexpr TIMUDataIndex gyro[] = {IMU_WX, IMU_WY, IMU_WZ};
+    const bool mine = describes(config.rig.imu.label, observation.sensorLabel);
+    for (int i = 0; i < 3; i++)
+    {
+        if (!observation.has(accel[i]) || !observation.has(gyro[i]))
+        {
+            skip(sample.t, "imu_invalid", "an IMU sample lacks a rate or a specific force");
+            return {};
+        }
+        sample.accel[i] = observation.get(accel[i]) * (mine ? config.rig.imu.accel_scale : 1);
+        sample.gyro[i] = observation.get(gyro[i]) * (mine ? config.rig.imu.gyro_scale : 1);
+    }
+    if (!sample.accel.allFinite() || !sample.gyro.allFinite())
+    {
+        skip(sample.t, "imu_invalid", "an IMU sample has values that are not finite");
+        return {};
+    }
+    if (!checkImuTime(sample.t)) return {};
+    if (const auto doubt = unit_check.add(sample)) warn(sample.t, "imu_units", *doubt);
+    progress.imu_samples++;
+    return sample;
+}
+
+bool RawlogSource::Impl::checkImuTime(Time t)
+{
+    if (last_imu && t <= *last_imu)
+    {
+        skip(
+            t, "imu_time",
+            t == *last_imu ? "two IMU samples have the same stamp"
+                           : "the IMU's time goes backward by " + seconds(*last_imu - t));
+        return false;
+    }
+    last_imu = t;
+    return true;
+}
+
+Pose RawlogSource::Impl::lidarPose(const CObservation& observation) const
+{
+    mrpt::poses::CPose3D pose;
+    observation.getSensorPose(pose);
+    Pose T_vehicle_lidar = toPose(pose);
+    if (config.rig.lidar.T_vehicle_lidar &&
+        describes(config.rig.lidar.label, observation.sensorLabel))
+        T_vehicle_lidar = *config.rig.lidar.T_vehicle_lidar;
+    return T_imu_vehicle ? *T_imu_vehicle * T_vehicle_lidar : T_vehicle_lidar;
+}
+
+std::optional<Measurement> RawlogSource::Impl::convertLidar(const CObservation& observation)
+{
+    const bool mine = describes(config.rig.lidar.label, observation.sensorLabel);
+    const Duration clock_offset = mine ? fromSeconds(config.rig.lidar.clock_offset) : 0;
+    const Time t = toTime(observation.timestamp) + clock_offset;
+    if (t < begin || t > end || enoughScans()) return {};
+    try
+    {
+        ScanBuilder points = observationToPoints(observation);
+        Scan scan = points.finish();
+        scan.stamp += clock_offset;
+        scan.end += clock_offset;
+        scan.sensor_label = observation.sensorLabel;
+        scan.T_imu_lidar = lidarPose(observation);
+        if (scan.points.empty())
+        {
+            skip(t, "scan_empty", "a scan has no valid point of " + std::to_string(points.seen()));
+            return {};
+        }
+        if (!checkScanTime(scan)) return {};
+        checkPoints(points, t);
+        if (scan.already_undistorted && !std::exchange(warned_undistorted, true))
+            warn(
+                t, "scan_undistorted",
+                "all points of a scan have the same time: it is taken as undistorted already");
+        progress.scans++;
+        return scan;
+    }
+    catch (const std::exception& e)
+    {
+        skip(t, "scan_invalid", std::string("a scan cannot be used: ") + e.what());
+        return {};
+    }
+}
+
+bool RawlogSource::Impl::checkScanTime(const Scan& scan)
+{
+    const bool stamp_back = last_scan && scan.stamp <= *last_scan;
+    const bool end_back = last_scan_end && scan.end <= *last_scan_end;
+    if (stamp_back || end_back)
+    {
+        const Duration back = stamp_back ? *last_scan - scan.stamp : *last_scan_end - scan.end;
+        const std::string what = stamp_back ? "stamp" : "end";
+        skip(
+            scan.stamp, "scan_time",
+            back == 0
+                ? "two scans have the same " + what
+                : "the LiDAR's time (" + what + " of the scan) goes backward by " + seconds(back));
+        return false;
+    }
+    last_scan = scan.stamp;
+    last_scan_end = scan.end;
+    return true;
+}
+
+void RawlogSource::Impl::checkPoints(const ScanBuilder& points, Time t)
+{
+    const std::size_t bad = points.notFinite() + points.badTime();
+    if (static_cast<double>(bad) <= kWorstBadShare * static_cast<double>(points.seen())) return;
+    warn(
+        t, "scan_bad_points",
+        std::to_string(points.notFinite()) + " points of " + std::to_string(points.seen()) +
+            " are not finite and " + std::to_string(points.badTime()) +
+            " have a time 2 s or more away from the scan's; dropped");
+}
+
+bool RawlogSource::Impl::enoughScans() const
+{
+    return config.only_first_n > 0 &&
+           progress.scans >= static_cast<std::size_t>(config.only_first_n);
+}
+
+/* The IMU is read on until it covers the last scan. */
+bool RawlogSource::Impl::beyondEnd(Time t) const
+{
+    if (!enoughScans())
+        return end < std::numeric_limits<Time>::max() - kDisorder && t > end + kDisorder;
+    return !last_scan_end || (last_imu && *last_imu >= *last_scan_end) ||
+           t > *last_scan_end + kDisorder;
+}
+
+RawlogSource::RawlogSource(const RawlogConfig& config, WarningSink warn)
+    : impl_(std::make_unique<Impl>(config, std::move(warn)))
+{
+}
+RawlogSource::~RawlogSource() = default;
+
+std::optional<Measurement> RawlogSource::next()
+{
+    return impl_->next();
+}
+
+RawlogProgress RawlogSource::progress() const
+{
+    return impl_->progress;
+}
+
+bool RawlogSource::incomplete() const
+{
+    return !impl_->reader.damage().empty();
+}
+}  // namespace taut

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+#include "taut/core/Scan.h"
+
+namespace taut
+{
+/** Collects the points of one scan, drops those that cannot be used and counts why. */
+class ScanBuilder
+{
+ public:
+    /** `stamp` is the reference of the offsets. */
+    ScanBuilder(Time stamp, std::size_t expected_points);
+
+    void add(const Eigen::Vector3f& position, float intensity, Time t, int ring);
+
+    /** The scan: end, rings and already_undistorted are set; the label and the pose are not. */
+    Scan finish();
+
+    std::size_t seen() const { return seen_; }
+    std::size_t notFinite() const { return not_finite_; }  //!< a coordinate is NaN or infinite
+    std::size_t noReturn() const { return no_return_; }    //!< at (0, 0, 0)
+    std::size_t badTime() const { return bad_time_; }      //!< 2 s or more away from the stamp
+
+ private:
+    Scan scan_;
+    std::size_t seen_ = 0, not_finite_ = 0, no_return_ = 0, bad_time_ = 0;
+    Duration first_ = std::numeric_limits<Duration>::max();
+    Duration last_ = std::numeric_limits<Duration>::min();
+    int last_ring_ = -1;
+};
+}  // namespace taut
