@@ -3,6 +3,7 @@
 #include <mrpt/rtti/CObject.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -11,29 +12,38 @@
 
 namespace taut
 {
-/** What a picture shows. */
+/** What a picture shows. Either points or a trajectory may be missing, not both. */
 struct RenderScene
 {
-    std::vector<Eigen::Vector3f> points;  //!< the map, world frame [m]; coloured by height
-    std::vector<Pose> trajectory;         //!< T_world_imu in the order of time
-    std::vector<std::string> caption;     //!< lines of text: sequence, length, duration, mode
+    /** The map, world frame [m]; coloured by height. Points that are not finite are left out. */
+    std::vector<Eigen::Vector3f> points;
+    std::vector<Pose> trajectory;      //!< T_world_imu in the order of time
+    std::vector<std::string> caption;  //!< lines of text: sequence, length, duration, mode
 };
 
 enum class View
 {
-    Top,      //!< straight down, north-up, orthographic
+    Top,  //!< straight down, orthographic; x to the right, or up where the map is taller than wide
     Oblique,  //!< from a corner, the whole map in sight
     Follow,   //!< behind and above the body at the end of the trajectory
 };
+inline constexpr std::array<View, 3> kAllViews{View::Top, View::Oblique, View::Follow};
+
+/** Name of a view in options and in names of files: "top". */
+constexpr const char* nameOf(View view)
+{
+    return view == View::Top ? "top" : view == View::Oblique ? "oblique" : "follow";
+}
 
 /** Plug point: makes an image file of a scene. */
 class Renderer : public mrpt::rtti::CObject
 {
     DEFINE_VIRTUAL_MRPT_OBJECT(Renderer)
-   public:
+ public:
     virtual void configure(ConfigSection& section) = 0;
 
-    /** Writes a PNG. Throws std::runtime_error with the cause if it cannot. */
+    /** Writes a PNG. Throws std::runtime_error with the cause if it cannot: nothing to show, a pose
+     * that is not finite, no trajectory to follow, a file that cannot be written. */
     virtual void render(const RenderScene& scene, View view, const std::string& png_path) = 0;
 };
 }  // namespace taut
