@@ -11,7 +11,7 @@ namespace
 {
 struct Options
 {
-    std::string truth, estimate;
+    std::string truth, estimate, points, points_truth;
     bool json = false;
     taut::ScoreOptions score;
 };
@@ -44,6 +44,11 @@ std::optional<Options> parse(int argc, char** argv)
         0.5, "0..1", cmd);
     TCLAP::ValueArg<int> min_poses(
         "", "min-poses", "Poses to be scored, else refused (default 10)", false, 10, "N", cmd);
+    TCLAP::ValueArg<std::string> points(
+        "", "points", "Undistorted points of the estimate, to be scored too", false, "", "FILE",
+        cmd);
+    TCLAP::ValueArg<std::string> points_truth(
+        "", "points-truth", "True undistorted points (of taut-simulate)", false, "", "FILE", cmd);
     if (!taut::parseCommandLine(cmd, argc, argv)) return {};
 
     Options options;
@@ -52,6 +57,10 @@ std::optional<Options> parse(int argc, char** argv)
     options.json = json.getValue();
     options.score.alignment = alignmentOf(alignment.getValue());
     options.score.min_coverage = min_coverage.getValue();
+    options.points = points.getValue();
+    options.points_truth = points_truth.getValue();
+    if (options.points.empty() != options.points_truth.empty())
+        throw taut::UsageError("--points and --points-truth need each other");
     if (min_poses.getValue() < 0) throw taut::UsageError("--min-poses is negative");
     options.score.min_poses = static_cast<std::size_t>(min_poses.getValue());
     return options;
@@ -63,7 +72,11 @@ void run(const Options& options)
     const taut::Trajectory truth = taut::readTum(options.truth, warn);
     const taut::Trajectory estimate = taut::readTum(options.estimate, warn);
     const taut::Scores scores = taut::scoreTrajectory(truth, estimate, options.score);
-    std::cout << (options.json ? scoresAsJson(scores) : scoresAsText(scores));
+    std::optional<taut::PointScores> points;
+    if (!options.points.empty())
+        points =
+            taut::scorePoints(options.points_truth, options.points, options.score.min_coverage);
+    std::cout << (options.json ? scoresAsJson(scores, points) : scoresAsText(scores, points));
 }
 }  // namespace
 

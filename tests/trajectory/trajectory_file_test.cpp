@@ -3,43 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <sstream>
-
+#include "TemporaryFile.h"
 #include "motions.h"
 
 using namespace taut;
+using taut::test::TemporaryFile;
 using ::testing::HasSubstr;
 
 namespace
 {
-/** A file that is gone at the end of the test. */
-class TemporaryFile
-{
- public:
-    explicit TemporaryFile(const std::string& content = "")
-        : path_(
-              ::testing::TempDir() + "taut_" +
-              ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".txt")
-    {
-        std::ofstream(path_, std::ios::binary) << content;
-    }
-    ~TemporaryFile() { std::filesystem::remove(path_); }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-    const std::string& path() const { return path_; }
-    std::string content() const
-    {
-        std::ostringstream out;
-        out << std::ifstream(path_, std::ios::binary).rdbuf();
-        return out.str();
-    }
-
- private:
-    std::string path_;
-};
-
 std::string errorOfTum(const std::string& content)
 {
     const TemporaryFile file(content);

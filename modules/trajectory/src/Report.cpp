@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "taut/trajectory/TrajectoryFile.h"
+
 namespace taut
 {
 namespace
@@ -50,9 +52,37 @@ Json toJson(const Coverage& c)
         {"early_end_s", c.early_end},
         {"largest_gap_s", c.largest_gap}};
 }
+
+Json toJson(const PointScores& p)
+{
+    return {
+        {"scans", p.scans},
+        {"truth_scans", p.truth_scans},
+        {"points", p.points},
+        {"missing_points", p.missing},
+        {"rmse_m", p.rmse},
+        {"mean_m", p.mean},
+        {"max_m", p.max},
+        {"median_scan_rmse_m", p.median_scan},
+        {"worst_scan_rmse_m", p.worst_scan},
+        {"worst_scan_stamp_ns", p.worst_stamp}};
+}
+
+std::string pointRows(const PointScores& p)
+{
+    std::string out = format(
+        "%-24s %-5s %11.6f %11.6f %11s %11.6f %7zu\n", "undistorted points", "m", p.rmse, p.mean,
+        "", p.max, p.points);
+    out += format(
+        "  in %zu of %zu scans, %zu points missing; RMSE of a scan: median %.6f m, worst %.6f m at "
+        "%s s\n",
+        p.scans, p.truth_scans, p.missing, p.median_scan, p.worst_scan,
+        formatSeconds(p.worst_stamp).c_str());
+    return out;
+}
 }  // namespace
 
-std::string scoresAsText(const Scores& s)
+std::string scoresAsText(const Scores& s, const std::optional<PointScores>& points)
 {
     std::string out =
         format("poses      %zu estimated, %zu with truth\n", s.estimate_poses, s.paired_poses);
@@ -66,10 +96,11 @@ std::string scoresAsText(const Scores& s)
         "error", "unit", "rmse", "mean", "median", "max", "count");
     out += row("ATE position", "m", s.absolute.position);
     out += row("ATE rotation", "deg", s.absolute.rotation_deg);
+    if (points) out += pointRows(*points);
     return out;
 }
 
-std::string scoresAsJson(const Scores& s)
+std::string scoresAsJson(const Scores& s, const std::optional<PointScores>& points)
 {
     Json out;
     out["truth_poses"] = s.truth_poses;
@@ -82,6 +113,7 @@ std::string scoresAsJson(const Scores& s)
     out["T_truth_estimate"] = toJson(s.absolute.T_truth_estimate);
     out["ate"]["position_m"] = toJson(s.absolute.position);
     out["ate"]["rotation_deg"] = toJson(s.absolute.rotation_deg);
+    if (points) out["points"] = toJson(*points);
     return out.dump(2) + "\n";
 }
 }  // namespace taut
