@@ -28,6 +28,13 @@ taut::Alignment alignmentOf(const std::string& name)
     }
 }
 
+const std::vector<double>& positive(const std::vector<double>& values)
+{
+    for (const double v : values)
+        if (!(v > 0)) throw taut::UsageError("times and distances must be above zero");
+    return values;
+}
+
 /** Nothing if only help was asked for. */
 std::optional<Options> parse(int argc, char** argv)
 {
@@ -44,6 +51,11 @@ std::optional<Options> parse(int argc, char** argv)
         0.5, "0..1", cmd);
     TCLAP::ValueArg<int> min_poses(
         "", "min-poses", "Poses to be scored, else refused (default 10)", false, 10, "N", cmd);
+    TCLAP::MultiArg<double> rpe_seconds(
+        "", "rpe-seconds", "Relative error over that time [s] (default 1 and 10)", false, "S", cmd);
+    TCLAP::MultiArg<double> rpe_metres(
+        "", "rpe-metres", "Relative error over that distance [m] (default 1 and 10)", false, "M",
+        cmd);
     TCLAP::ValueArg<std::string> points(
         "", "points", "Undistorted points of the estimate, to be scored too", false, "", "FILE",
         cmd);
@@ -57,6 +69,8 @@ std::optional<Options> parse(int argc, char** argv)
     options.json = json.getValue();
     options.score.alignment = alignmentOf(alignment.getValue());
     options.score.min_coverage = min_coverage.getValue();
+    if (rpe_seconds.isSet()) options.score.rpe_seconds = positive(rpe_seconds.getValue());
+    if (rpe_metres.isSet()) options.score.rpe_metres = positive(rpe_metres.getValue());
     options.points = points.getValue();
     options.points_truth = points_truth.getValue();
     if (options.points.empty() != options.points_truth.empty())

@@ -12,8 +12,6 @@ using ::testing::HasSubstr;
 
 namespace
 {
-constexpr double kDegrees = 180 / M_PI;
-
 /** n poses on a circle of radius r in the horizontal plane, at 10 Hz, once around. */
 Trajectory circle(int n, double r)
 {
@@ -97,7 +95,7 @@ TEST(AbsoluteError, WithYawAlignmentKeepsATilt)
     const double tilt = 0.1;
     const Pose tilted{expSO3({tilt, 0, 0}), {}};
     const Scores scores = scoreTrajectory(truth, test::moved(tilted, truth), options);
-    EXPECT_GE(scores.absolute.rotation_deg.median, tilt * kDegrees - 1e-9);
+    EXPECT_GE(scores.absolute.rotation_deg.median, tilt * kDegreesPerRadian - 1e-9);
     EXPECT_GT(scores.absolute.position.rmse, 0.1);
 }
 
@@ -152,7 +150,7 @@ TEST(AbsoluteError, OfWhiteNoiseIsItsSigma)
     // 3n values less the six that the alignment takes; the RMSE spreads by 1/sqrt(2 * 3n).
     const double expected = sigma * std::sqrt(3.0 - 6.0 / n);
     EXPECT_NEAR(scores.absolute.position.rmse, expected, 4 * expected / std::sqrt(6.0 * n));
-    EXPECT_NEAR(scores.absolute.rotation_deg.rmse, 0.01 * std::sqrt(3.0) * kDegrees, 0.03);
+    EXPECT_NEAR(scores.absolute.rotation_deg.rmse, 0.01 * std::sqrt(3.0) * kDegreesPerRadian, 0.03);
 }
 
 TEST(AbsoluteError, SaysWhenThePositionsDoNotDetermineTheAlignment)
@@ -180,7 +178,7 @@ TEST(Scores, InterpolateADenseTruthToASparseEstimate)
     EXPECT_EQ(scores.paired_poses, estimate.size());
     // Linear interpolation is off by at most a dt^2 / 8, with a < 1.5 m/s^2 and 2 rad/s^2 here.
     EXPECT_LT(scores.absolute.position.max, 1.5 * 0.005 * 0.005 / 8);
-    EXPECT_LT(scores.absolute.rotation_deg.max, 2 * 0.005 * 0.005 / 8 * kDegrees);
+    EXPECT_LT(scores.absolute.rotation_deg.max, 2 * 0.005 * 0.005 / 8 * kDegreesPerRadian);
     EXPECT_GT(scores.absolute.position.max, 1e-7);
 }
 

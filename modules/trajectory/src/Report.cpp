@@ -21,13 +21,17 @@ std::string format(const char* pattern, Values... values)
 
 std::string row(const std::string& name, const char* unit, const Statistics& s)
 {
+    if (s.count == 0)
+        return format("%-24s %-5s %11s\n", name.c_str(), unit, "none: too short or too sparse");
     return format(
         "%-24s %-5s %11.6f %11.6f %11.6f %11.6f %7zu\n", name.c_str(), unit, s.rmse, s.mean,
         s.median, s.max, s.count);
 }
 
+/** Where there is nothing to tell, null: a zero would read as perfect. */
 Json toJson(const Statistics& s)
 {
+    if (s.count == 0) return nullptr;
     return {
         {"rmse", s.rmse},
         {"mean", s.mean},
@@ -36,11 +40,52 @@ Json toJson(const Statistics& s)
         {"count", s.count}};
 }
 
+std::string rows(const std::string& over, const RelativeError& e)
+{
+    return row("RPE over " + over + " position", "m", e.translation) +
+           row("RPE over " + over + " rotation", "deg", e.rotation_deg);
+}
+
+std::string row(const std::string& name, const SegmentErrors& e)
+{
+    if (e.all.count == 0) return format("%-24s none: the path is too short\n", name.c_str());
+    return format(
+        "%-24s %.4f %%, %.6f deg/m over %zu segments\n", name.c_str(), e.all.translation_percent,
+        e.all.rotation_deg_per_m, e.all.count);
+}
+
 Json toJson(const Pose& T)
 {
     Json rows = Json::array();
     for (int i = 0; i < 3; i++) rows.push_back({T.R(i, 0), T.R(i, 1), T.R(i, 2), T.p[i]});
     return rows;
+}
+
+Json toJson(const std::vector<RelativeError>& errors, const char* delta_name)
+{
+    Json out = Json::array();
+    for (const RelativeError& e : errors)
+        out.push_back(
+            {{delta_name, e.delta},
+             {"translation_m", toJson(e.translation)},
+             {"rotation_deg", toJson(e.rotation_deg)}});
+    return out;
+}
+
+Json toJson(const SegmentError& e)
+{
+    Json out{{"count", e.count}};
+    if (e.length > 0) out["length_m"] = e.length;
+    out["translation_percent"] = e.count > 0 ? Json(e.translation_percent) : Json();
+    out["rotation_deg_per_m"] = e.count > 0 ? Json(e.rotation_deg_per_m) : Json();
+    return out;
+}
+
+Json toJson(const SegmentErrors& errors)
+{
+    Json out = toJson(errors.all);
+    for (const SegmentError& e : errors.by_length) out["by_length"].push_back(toJson(e));
+    return out;
 }
 
 Json toJson(const Coverage& c)
@@ -96,6 +141,10 @@ std::string scoresAsText(const Scores& s, const std::optional<PointScores>& poin
         "error", "unit", "rmse", "mean", "median", "max", "count");
     out += row("ATE position", "m", s.absolute.position);
     out += row("ATE rotation", "deg", s.absolute.rotation_deg);
+    for (const RelativeError& e : s.over_time) out += rows(format("%g s", e.delta), e);
+    for (const RelativeError& e : s.over_distance) out += rows(format("%g m", e.delta), e);
+    out += row("KITTI 100..800 m", s.kitti);
+    out += row("segments 5..40 m", s.short_segments);
     if (points) out += pointRows(*points);
     return out;
 }
@@ -113,6 +162,10 @@ std::string scoresAsJson(const Scores& s, const std::optional<PointScores>& poin
     out["T_truth_estimate"] = toJson(s.absolute.T_truth_estimate);
     out["ate"]["position_m"] = toJson(s.absolute.position);
     out["ate"]["rotation_deg"] = toJson(s.absolute.rotation_deg);
+    out["rpe"]["over_time"] = toJson(s.over_time, "delta_s");
+    out["rpe"]["over_distance"] = toJson(s.over_distance, "delta_m");
+    out["kitti_segments"] = toJson(s.kitti);
+    out["short_segments"] = toJson(s.short_segments);
     if (points) out["points"] = toJson(*points);
     return out.dump(2) + "\n";
 }

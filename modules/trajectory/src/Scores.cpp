@@ -1,15 +1,12 @@
 #include "taut/trajectory/Scores.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 namespace taut
 {
 namespace
 {
-constexpr double kDegrees = 180 / M_PI;
-
 void refuseTooLittle(const Scores& scores, const ScoreOptions& options)
 {
     char text[200];
@@ -33,25 +30,6 @@ void refuseTooLittle(const Scores& scores, const ScoreOptions& options)
 }
 }  // namespace
 
-Statistics statisticsOf(std::vector<double> values)
-{
-    Statistics s;
-    s.count = values.size();
-    if (values.empty()) return s;
-    const double n = static_cast<double>(s.count);
-    double squares = 0;
-    for (const double v : values)
-    {
-        s.mean += v / n;
-        squares += v * v / n;
-    }
-    s.rmse = std::sqrt(squares);
-    std::sort(values.begin(), values.end());
-    s.median = (values[(s.count - 1) / 2] + values[s.count / 2]) / 2;
-    s.max = values.back();
-    return s;
-}
-
 AbsoluteError absoluteError(const PosePairs& pairs, Alignment alignment)
 {
     AbsoluteError out;
@@ -61,7 +39,7 @@ AbsoluteError absoluteError(const PosePairs& pairs, Alignment alignment)
     {
         const Pose error = pair.truth.inverse() * (out.T_truth_estimate * pair.estimate);
         position.push_back(error.p.norm());
-        rotation.push_back(angleOf(error.R) * kDegrees);
+        rotation.push_back(angleOf(error.R) * kDegreesPerRadian);
         out.errors.push_back({pair.t, position.back(), rotation.back()});
     }
     out.position = statisticsOf(std::move(position));
@@ -109,6 +87,12 @@ Scores scoreTrajectory(
     }
     scores.alignment = options.alignment;
     scores.absolute = absoluteError(pairs, options.alignment);
+    for (const double seconds : options.rpe_seconds)
+        scores.over_time.push_back(relativeErrorOverTime(pairs, seconds));
+    for (const double metres : options.rpe_metres)
+        scores.over_distance.push_back(relativeErrorOverDistance(pairs, metres));
+    scores.kitti = kittiSegmentErrors(pairs);
+    scores.short_segments = shortSegmentErrors(pairs);
     return scores;
 }
 }  // namespace taut

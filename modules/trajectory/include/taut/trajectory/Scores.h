@@ -5,18 +5,11 @@
 #include <vector>
 
 #include "taut/trajectory/Alignment.h"
+#include "taut/trajectory/RelativeErrors.h"
+#include "taut/trajectory/Statistics.h"
 
 namespace taut
 {
-struct Statistics
-{
-    std::size_t count = 0;
-    double rmse = 0, mean = 0, median = 0, max = 0;
-};
-
-/** Of values >= 0; all zero where there are none. */
-Statistics statisticsOf(std::vector<double> values);
-
 /** The error of one pose, after alignment. */
 struct PoseError
 {
@@ -54,10 +47,12 @@ Coverage coverageOf(const Trajectory& truth, const Trajectory& estimate, Duratio
 struct ScoreOptions
 {
     Alignment alignment = Alignment::SE3;
-    double min_coverage = 0.5;      //!< share of the truth's span
-    std::size_t min_poses = 10;     //!< poses of the estimate with a truth
-    Duration max_truth_gap = 0;     //!< [ns]; 0: three times the median spacing
-    Duration max_estimate_gap = 0;  //!< [ns]; 0: three times the median spacing
+    std::vector<double> rpe_seconds{1, 10};  //!< [s]
+    std::vector<double> rpe_metres{1, 10};   //!< [m]
+    double min_coverage = 0.5;               //!< share of the truth's span
+    std::size_t min_poses = 10;              //!< poses of the estimate with a truth
+    Duration max_truth_gap = 0;              //!< [ns]; 0: three times the median spacing
+    Duration max_estimate_gap = 0;           //!< [ns]; 0: three times the median spacing
 };
 
 /** The estimate is too little to be scored; what() says by how much. */
@@ -74,6 +69,9 @@ struct Scores
     double estimate_path = 0;  //!< [m]
     Alignment alignment = Alignment::SE3;
     AbsoluteError absolute;
+    std::vector<RelativeError> over_time, over_distance;  //!< one for each delta asked for
+    SegmentErrors kitti;                                  //!< 100 to 800 m
+    SegmentErrors short_segments;                         //!< 5 to 40 m
 };
 
 /** Every score of an estimate. Throws ScoreRefused where it covers too little, std::runtime_error
