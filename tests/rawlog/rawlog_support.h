@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "numeric.h"
 #include "taut/core/WarningLog.h"
 #include "taut/rawlog/RawlogSource.h"
 #include "taut/rawlog/RawlogWriter.h"

@@ -2,9 +2,11 @@
 
 #include <mrpt/obs/CObservationVelodyneScan.h>
 
+#include <cstring>
 #include <stdexcept>
 
 #include "MrptConversion.h"
+#include "taut/rawlog/velodyne/Decoder.h"
 
 namespace taut
 {
@@ -33,6 +35,46 @@ ScanBuilder fromPointCloud(const CObservationVelodyneScan& scan)
             cloud.laser_id.empty() ? 0 : cloud.laser_id[i]);
     return builder;
 }
+
+constexpr double kDegree = M_PI / 180;
+
+velodyne::Calibration calibrationOf(const CObservationVelodyneScan& scan, velodyne::Model model)
+{
+    if (scan.calibration.empty()) return velodyne::defaultCalibration(model);
+    velodyne::Calibration calibration;
+    for (const auto& c : scan.calibration.laser_corrections)
+        calibration.push_back(
+            {c.verticalCorrection * kDegree, c.azimuthCorrection * kDegree, c.distanceCorrection,
+             c.verticalOffsetCorrection, c.horizontalOffsetCorrection});
+    return calibration;
+}
+
+/* The observation's stamp is the time of the first firing of its first packet (MRPT's definition),
+ * by whichever clock the recorder used; the packets' own clock tells the rest relative to it. */
+ScanBuilder fromPackets(const CObservationVelodyneScan& scan)
+{
+    using Packet = CObservationVelodyneScan::TVelodyneRawPacket;
+    static_assert(sizeof(Packet) == velodyne::kPacketBytes);
+    const Time stamp = toTime(scan.timestamp);
+    ScanBuilder builder(stamp, scan.scan_packets.size() * velodyne::kBlocks * 32);
+    velodyne::PacketClock clock;
+    velodyne::Calibration calibration;
+    std::vector<velodyne::Return> returns;
+    std::uint8_t bytes[velodyne::kPacketBytes];
+    for (const Packet& packet : scan.scan_packets)
+    {
+        std::memcpy(bytes, &packet, sizeof bytes);
+        if (calibration.empty())
+            calibration = calibrationOf(scan, velodyne::packetInfo(bytes).model);
+        returns.clear();
+        const auto info = velodyne::decodePacket(bytes, calibration, returns);
+        const Time packet_time = stamp + clock.sinceFirst(info.microseconds);
+        for (const auto& r : returns)
+            builder.add(r.position, r.intensity, packet_time + r.offset, r.laser);
+    }
+    builder.setRings(static_cast<int>(calibration.size()));
+    return builder;
+}
 }  // namespace
 
 bool isLidar(const mrpt::obs::CObservation& observation)
@@ -42,6 +84,7 @@ bool isLidar(const mrpt::obs::CObservation& observation)
 
 ScanBuilder observationToPoints(const mrpt::obs::CObservation& observation)
 {
-    return fromPointCloud(dynamic_cast<const CObservationVelodyneScan&>(observation));
+    const auto& scan = dynamic_cast<const CObservationVelodyneScan&>(observation);
+    return scan.scan_packets.empty() ? fromPointCloud(scan) : fromPackets(scan);
 }
 }  // namespace taut

@@ -42,7 +42,7 @@ Scan ScanBuilder::finish()
 {
     if (last_ >= first_) scan_.end = scan_.stamp + last_;
     // One ring is as good as none: nothing can be learned from neighbours along it.
-    scan_.rings = last_ring_ > 0 ? last_ring_ + 1 : 0;
+    scan_.rings = rings_ > 0 ? rings_ : last_ring_ > 0 ? last_ring_ + 1 : 0;
     scan_.already_undistorted = scan_.points.size() > 1 && first_ == last_;
     return std::move(scan_);
 }

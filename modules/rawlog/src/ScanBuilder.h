@@ -16,6 +16,9 @@ class ScanBuilder
 
     void add(const Eigen::Vector3f& position, float intensity, Time t, int ring);
 
+    /** Where the sensor is known; else the largest ring seen counts. */
+    void setRings(int rings) { rings_ = rings; }
+
     /** The scan: end, rings and already_undistorted are set; the label and the pose are not. */
     Scan finish();
 
@@ -29,6 +32,6 @@ class ScanBuilder
     std::size_t seen_ = 0, not_finite_ = 0, no_return_ = 0, bad_time_ = 0;
     Duration first_ = std::numeric_limits<Duration>::max();
     Duration last_ = std::numeric_limits<Duration>::min();
-    int last_ring_ = -1;
+    int last_ring_ = -1, rings_ = 0;
 };
 }  // namespace taut
