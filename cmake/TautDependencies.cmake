@@ -13,6 +13,7 @@ find_package(tsl-robin-map 1.2 REQUIRED) # robin-map-dev 1.2.1
 find_package(nlohmann_json 3.11 REQUIRED) # nlohmann-json3-dev 3.11.2
 find_library(OSMESA_LIBRARY OSMesa REQUIRED) # libosmesa6-dev 22.3.6
 find_path(OSMESA_INCLUDE_DIR GL/osmesa.h REQUIRED)
+find_package(embree 3 QUIET) # libembree-dev 3.13.5; optional: simulation
 
 # Strict warnings, on an interface target so that no directory forgets them.
 add_library(taut_options INTERFACE)

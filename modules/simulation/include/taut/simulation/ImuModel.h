@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "taut/core/Config.h"
+#include "taut/core/Imu.h"
+#include "taut/simulation/Motion.h"
+
+namespace taut::simulation
+{
+enum class ImuPreset
+{
+    Ideal,       //!< no errors at all
+    Industrial,  //!< ADIS16448-like
+};
+
+/** An IMU and its errors. */
+struct ImuConfig
+{
+    ImuPreset type = ImuPreset::Industrial;
+    double rate = 200;      //!< [Hz]
+    ImuNoise noise;         //!< white noise densities and random walks of the biases
+    double gyro_bias = 0;   //!< turn-on bias, standard deviation of each axis [rad/s]
+    double accel_bias = 0;  //!< [m/s^2]
+    double gyro_scale = 0;  //!< scale error, standard deviation of each axis
+    double accel_scale = 0;
+    double gyro_misalignment = 0;  //!< axes against one another, standard deviation [rad]
+    double accel_misalignment = 0;
+    double gyro_range = 1e9;          //!< saturation [rad/s]
+    double accel_range = 1e9;         //!< [m/s^2]
+    double clock_offset = 0;          //!< of the IMU's stamps against the LiDAR's [s]
+    double gyro_vibration = 0;        //!< amplitude of the vibration of the mount [rad/s]
+    double accel_vibration = 0;       //!< [m/s^2]
+    double vibration_frequency = 90;  //!< [Hz]
+    bool averaging =
+        true;  //!< a sample is the mean over its interval; else the value at its middle
+};
+
+ImuConfig imuPreset(ImuPreset preset);
+void declare(ConfigSection& section, ImuConfig& config);
+
+/** What the IMU says, and what was true. All arrays have one entry a sample. */
+struct ImuRecording
+{
+    ImuSamples samples;           //!< stamped by the IMU's clock, since the start of the simulation
+    std::vector<Duration> times;  //!< true time: the middle of the sample's interval [ns]
+    std::vector<Vector3d> gyro_bias, accel_bias;
+};
+
+/** Samples over [0, duration]. Deterministic in the seed. */
+ImuRecording simulateImu(
+    const ImuConfig& config, const Motion& motion, double duration, std::uint64_t seed);
+
+/** What a perfect IMU reads at one instant: angular rate and specific force, R^T (a + g). */
+ImuSample trueImu(const MotionState& state);
+}  // namespace taut::simulation

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "taut/core/Config.h"
+#include "taut/core/Parallel.h"
+#include "taut/core/Scan.h"
+#include "taut/simulation/LidarPattern.h"
+#include "taut/simulation/Motion.h"
+#include "taut/simulation/RayCaster.h"
+
+namespace taut::simulation
+{
+enum class LidarType
+{
+    Vlp16,
+};
+
+/** What a LiDAR measures, and how well. */
+struct LidarConfig
+{
+    LidarType type = LidarType::Vlp16;
+    double rotation_rate = 10;   //!< sweeps a second [Hz]
+    double min_range = 0.5;      //!< [m]
+    double max_range = 100;      //!< [m]
+    double range_noise = 0.02;   //!< standard deviation [m]
+    double range_step = 0;       //!< resolution of the ranges; 0 = as fine as float [m]
+    double detection_range = 0;  //!< at which half of the shots at a white wall return; 0 = all [m]
+    double dropout = 0;          //!< part of the shots lost for no reason
+    double divergence = 0;       //!< full angle of the beam; 0 = a line without mixed pixels [rad]
+    Pose T_imu_lidar;
+};
+
+LidarConfig lidarPreset(LidarType type);
+void declare(ConfigSection& section, LidarConfig& config);
+
+/** A scan with the truth of each of its points. */
+struct SimulatedScan
+{
+    Scan scan;  //!< stamp: time of the first shot of the sweep; times since the start of the
+                //!< simulation
+    /** Each point as it would be measured by a body that stands still where it is at scan.end:
+     * moved by the true motion into the IMU frame at scan.end. Range noise stays in it. */
+    std::vector<Eigen::Vector3f> truth;
+    /** The surface point that the middle of the beam met, world frame. */
+    std::vector<Vector3d> surface;
+};
+
+/** Casts the shots of a LiDAR that moves through a world, each at its own time. */
+class Lidar
+{
+ public:
+    Lidar(const LidarConfig& config, std::uint64_t seed);
+
+    /** Number of whole sweeps in [0, duration]; the first starts at kStart. */
+    int sweeps(double duration) const;
+
+    /** Sweep k. The same bits with any number of threads. Scan::end is the time of the last point.
+     */
+    SimulatedScan sweep(
+        int k, const Motion& motion, const RayCaster& world, Executor& executor) const;
+
+    static constexpr Duration kStart = 20'000'000;  //!< the IMU is there first [ns]
+
+ private:
+    struct Return;
+    std::vector<Return> castAll(
+        const std::vector<Shot>& shots, int k, const Motion& motion, const RayCaster& world,
+        Executor& executor) const;
+
+    LidarConfig config_;
+    std::uint64_t seed_;
+    std::unique_ptr<LidarPattern> pattern_;
+};
+}  // namespace taut::simulation

@@ -1,0 +1,136 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "simulation_support.h"
+
+using namespace taut;
+using namespace taut::simulation;
+using namespace taut::simulation::test;
+
+namespace
+{
+LidarConfig noiseFree()
+{
+    LidarConfig config = lidarPreset(LidarType::Vlp16);
+    config.range_noise = config.range_step = config.dropout = config.detection_range = 0;
+    config.T_imu_lidar = {expSO3(Vector3d(0.1, -0.2, 0.3)), Vector3d(0.1, 0.05, -0.15)};
+    return config;
+}
+}  // namespace
+
+TEST(Lidar, NoiseFreePointsLieOnSurfaces)
+{
+    const RayCaster world(smallWorld().mesh);
+    const Motion motion = motionOf(MotionPreset::Violent, 6, 1);
+    Executor executor(1);
+    const LidarConfig config = noiseFree();
+    const Lidar lidar(config, 1);
+    for (const int k : {0, 20, 41})
+    {
+        const SimulatedScan s = lidar.sweep(k, motion, world, executor);
+        ASSERT_GT(s.scan.points.size(), 20000U);
+        for (std::size_t i = 0; i < s.scan.points.size(); i += 37)
+        {
+            EXPECT_LT(world.clearance(s.surface[i], 0.01), 1e-6);
+            // The stored point carries the rounding to float, and nothing more.
+            const Pose T = motion.poseAt(toSeconds(s.scan.timeOf(s.scan.points[i])));
+            const Vector3d stored =
+                T * config.T_imu_lidar * s.scan.points[i].position.cast<double>();
+            EXPECT_LT((stored - s.surface[i]).norm(), 3e-6);
+        }
+    }
+}
+
+TEST(Lidar, TruthIsThePointSeenFromTheEndOfTheScan)
+{
+    const RayCaster world(smallWorld().mesh);
+    const Motion motion = motionOf(MotionPreset::Violent, 6, 1);
+    Executor executor(1);
+    const SimulatedScan s = Lidar(noiseFree(), 1).sweep(40, motion, world, executor);
+    const Pose T_end = motion.poseAt(toSeconds(s.scan.end));
+    Time last = 0;
+    for (std::size_t i = 0; i < s.truth.size(); i++)
+    {
+        EXPECT_LT((T_end * s.truth[i].cast<double>() - s.surface[i]).norm(), 4e-6);
+        last = std::max(last, s.scan.timeOf(s.scan.points[i]));
+    }
+    EXPECT_EQ(last, s.scan.end);
+}
+
+TEST(Lidar, ThreadsDoNotChangeTheBits)
+{
+    const RayCaster world(smallWorld().mesh);
+    const Motion motion = motionOf(MotionPreset::Fast, 4, 1);
+    LidarConfig config = lidarPreset(LidarType::Vlp16);
+    const Lidar lidar(config, 9);
+    Executor one(1), three(3);
+    const SimulatedScan a = lidar.sweep(25, motion, world, one);
+    const SimulatedScan b = lidar.sweep(25, motion, world, three);
+    ASSERT_EQ(a.scan.points.size(), b.scan.points.size());
+    for (std::size_t i = 0; i < a.scan.points.size(); i++)
+    {
+        ASSERT_EQ(a.scan.points[i].position, b.scan.points[i].position);
+        ASSERT_EQ(a.scan.points[i].offset, b.scan.points[i].offset);
+        ASSERT_EQ(a.truth[i], b.truth[i]);
+    }
+    const SimulatedScan other = Lidar(config, 10).sweep(25, motion, world, one);
+    EXPECT_NE(a.truth, other.truth);
+}
+
+TEST(Lidar, RangeNoiseHasTheDeviationAskedFor)
+{
+    const RayCaster world(smallWorld().mesh);
+    const Motion motion = motionOf(MotionPreset::Calm, 4, 3);
+    LidarConfig config = noiseFree();
+    Executor executor(1);
+    const SimulatedScan clean = Lidar(config, 1).sweep(3, motion, world, executor);
+    config.range_noise = 0.03;
+    const SimulatedScan noisy = Lidar(config, 1).sweep(3, motion, world, executor);
+    ASSERT_EQ(clean.scan.points.size(), noisy.scan.points.size());
+    double sum = 0;
+    for (std::size_t i = 0; i < clean.scan.points.size(); i++)
+        sum += std::pow(
+            noisy.scan.points[i].position.norm() - clean.scan.points[i].position.norm(), 2);
+    const double deviation = std::sqrt(sum / static_cast<double>(clean.scan.points.size()));
+    EXPECT_NEAR(deviation, 0.03, 0.001);
+}
+
+TEST(Lidar, FarAndGrazingShotsAreLostFirst)
+{
+    Mesh mesh;
+    addQuad(mesh, {-200, -200, 0}, {200, -200, 0}, {200, 200, 0}, {-200, 200, 0}, 0.5F);
+    const RayCaster world(mesh);
+    const Motion motion = motionOf(MotionPreset::Calm, 2, 2);
+    LidarConfig config = noiseFree();
+    Executor executor(1);
+    const auto count = [&](float from, float to, const LidarConfig& c)
+    {
+        std::size_t n = 0;
+        for (const LidarPoint& p : Lidar(c, 1).sweep(0, motion, world, executor).scan.points)
+            n += p.position.norm() >= from && p.position.norm() < to;
+        return static_cast<double>(n);
+    };
+    LidarConfig real = config;
+    real.detection_range = 60;
+    EXPECT_GT(count(0, 8, real), 0.98 * count(0, 8, config));
+    EXPECT_LT(count(30, 100, real), 0.2 * count(30, 100, config));
+    EXPECT_GT(count(30, 100, config), 100);
+}
+
+TEST(LidarPattern, Vlp16FiresAsItsManualSays)
+{
+    const auto pattern = makeVlp16Pattern(10);
+    const auto shots = pattern->sweep(0);
+    EXPECT_EQ(shots.size(), 1809U * 16);  // 0.1 s / 55.296 us
+    EXPECT_NEAR(shots[1].direction.z(), std::sin(M_PI / 180), 1e-12);
+    EXPECT_EQ(shots[15].t, 34600);  // 15 * 2.304 us in ticks of 100 ns
+    EXPECT_EQ(shots[16].t, 55300);
+    // Clockwise from +y.
+    EXPECT_NEAR(shots[0].direction.y(), std::cos(15 * M_PI / 180), 1e-9);
+    EXPECT_GT(shots[1600].direction.x(), 0.1);
+    // Sweeps join without overlap or gap.
+    const auto next = pattern->sweep(1);
+    EXPECT_GT(next.front().t, shots.back().t);
+    EXPECT_LT(next.front().t - shots.back().t, 56000);
+}
