@@ -143,5 +143,5 @@ TEST_P(Extractor, RejectsAMinimumAboveTheMaximum)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Of, Extractor, ::testing::Values("taut::VoxelThinning"),
+    Of, Extractor, ::testing::Values("taut::CurvatureExtractor", "taut::VoxelThinning"),
     [](const auto& test) { return std::string(test.param).substr(6); });

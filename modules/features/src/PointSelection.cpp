@@ -61,12 +61,13 @@ PointIndices onePerVoxel(const Scan& scan, const PointIndices& candidates, doubl
 PointIndices thinToAtMost(
     const Scan& scan, PointIndices candidates, double voxel_size, std::size_t max_points)
 {
+    if (max_points == 0) return {};
     while (candidates.size() > max_points)
     {
-        // Even points that fill a volume fall no faster than with the cube of the voxel's size.
+        // Points on surfaces become fewer with the square of the voxel's size.
         const double excess =
             static_cast<double>(candidates.size()) / static_cast<double>(max_points);
-        voxel_size *= std::max(1.1, std::cbrt(excess));
+        voxel_size *= std::max(1.1, std::sqrt(excess));
         candidates = onePerVoxel(scan, candidates, voxel_size);
     }
     return candidates;
@@ -87,8 +88,15 @@ void sortFeatures(Features& features)
         [&](const Feature& a, const Feature& b) { return key(a) < key(b); });
 }
 
-void warnSparse(const Scan& scan, const std::string& text, const WarningSink& warn)
+bool warnIfSparse(
+    const Scan& scan, std::size_t points, std::size_t min_points, const WarningSink& warn)
 {
-    if (warn) warn({scan.end, "sparse_scan", text});
+    if (points > 0 && points >= min_points) return false;
+    if (warn)
+        warn(
+            {scan.end, "sparse_scan",
+             "the scan has " + std::to_string(points) + " points, fewer than " +
+                 std::to_string(std::max<std::size_t>(min_points, 1))});
+    return true;
 }
 }  // namespace taut

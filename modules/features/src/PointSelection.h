@@ -14,6 +14,8 @@ namespace taut
 {
 using PointIndices = std::vector<std::uint32_t>;
 
+inline constexpr double kSmallestVoxel = 1e-3;  //!< [m]; a smaller one is the point itself
+
 /** The points whose coordinates are all finite. */
 PointIndices finitePoints(const Scan& scan);
 
@@ -33,6 +35,8 @@ void addFeature(const Scan& scan, std::uint32_t index, FeatureKind kind, Feature
  * which the points came. */
 void sortFeatures(Features& features);
 
-/** Tells that a scan has few points; `text` says how few. */
-void warnSparse(const Scan& scan, const std::string& text, const WarningSink& warn);
+/** Warns ("sparse_scan") of a scan that has fewer points than `min_points`, or none; returns
+ * whether. */
+bool warnIfSparse(
+    const Scan& scan, std::size_t points, std::size_t min_points, const WarningSink& warn);
 }  // namespace taut

@@ -6,11 +6,6 @@ IMPLEMENTS_MRPT_OBJECT(VoxelThinning, taut::FeatureExtractor, taut)
 
 namespace taut
 {
-namespace
-{
-constexpr double kSmallestVoxel = 1e-3;  // [m]: below, points are thinned by nothing that matters
-}
-
 void VoxelThinning::configure(ConfigSection& section)
 {
     section.key("voxel_size", config_.voxel_size, {kSmallestVoxel, 1e3}, "m, edge of a voxel");
@@ -24,12 +19,7 @@ Features VoxelThinning::extract(const Scan& scan, const WarningSink& warn) const
 {
     const PointIndices all = finitePoints(scan);
     const auto min_points = static_cast<std::size_t>(config_.min_points);
-    if (all.size() < min_points || all.empty())
-        warnSparse(
-            scan,
-            "the scan has " + std::to_string(all.size()) + " points, fewer than " +
-                std::to_string(min_points),
-            warn);
+    warnIfSparse(scan, all.size(), min_points, warn);
 
     double voxel_size = config_.voxel_size;
     PointIndices kept = all;

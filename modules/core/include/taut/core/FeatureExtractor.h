@@ -17,7 +17,7 @@ class FeatureExtractor : public mrpt::rtti::CObject
     virtual void configure(ConfigSection& section) = 0;
 
     /** Features of a scan in the IMU frame (after transformScan), sorted by time. Deterministic. A
-     * scan that gives too few is thinned less, and a warning says so. */
+     * scan that gives too few is thinned less; one that has too few points gets a warning. */
     virtual Features extract(const Scan& scan, const WarningSink& warn) const = 0;
 };
 }  // namespace taut

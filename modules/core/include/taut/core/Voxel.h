@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
 
 /** \file Voxel.h
@@ -25,9 +25,11 @@ std::uint64_t voxelKey(const Eigen::Matrix<Scalar, 3, 1>& point, Scalar inverse_
     std::uint64_t key = 0;
     for (int i = 0; i < 3; i++)
     {
-        Scalar cell = std::floor(point[i] * inverse_size);
-        cell = cell < -limit ? -limit : (cell > limit ? limit : cell);
-        key = key << 21 | static_cast<std::uint64_t>(static_cast<std::int64_t>(cell) + (1 << 20));
+        const Scalar scaled = std::max(-limit, std::min(limit, point[i] * inverse_size));
+        auto cell =
+            static_cast<std::int32_t>(scaled);  // towards zero; std::floor is 4 times slower
+        cell -= scaled < static_cast<Scalar>(cell);
+        key = key << 21 | static_cast<std::uint64_t>(cell + (1 << 20));
     }
     return key;
 }
