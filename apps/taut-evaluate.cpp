@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "CommandLine.h"
+#include "taut/trajectory/Plots.h"
 #include "taut/trajectory/Report.h"
 #include "taut/trajectory/TrajectoryFile.h"
 
@@ -11,7 +12,8 @@ namespace
 {
 struct Options
 {
-    std::string truth, estimate, points, points_truth;
+    std::string truth, estimate, kitti_times, points, points_truth, plot_folder;
+    taut::PlotFormat plot_format = taut::PlotFormat::Svg;
     bool json = false;
     taut::ScoreOptions score;
 };
@@ -35,13 +37,24 @@ const std::vector<double>& positive(const std::vector<double>& values)
     return values;
 }
 
+taut::PlotFormat plotFormatOf(const std::string& name)
+{
+    if (name == "svg") return taut::PlotFormat::Svg;
+    if (name == "png") return taut::PlotFormat::Png;
+    throw taut::UsageError("'" + name + "' is not a format of plots (svg, png)");
+}
+
 /** Nothing if only help was asked for. */
 std::optional<Options> parse(int argc, char** argv)
 {
     TCLAP::CmdLine cmd("Scores an estimated trajectory against the truth", ' ', "0.1");
-    TCLAP::ValueArg<std::string> truth("", "truth", "True trajectory (TUM)", true, "", "FILE", cmd);
+    TCLAP::ValueArg<std::string> truth(
+        "", "truth", "True trajectory (TUM file)", true, "", "FILE", cmd);
     TCLAP::ValueArg<std::string> estimate(
-        "", "estimate", "Estimated trajectory (TUM)", true, "", "FILE", cmd);
+        "", "estimate", "Estimated trajectory (TUM file)", true, "", "FILE", cmd);
+    TCLAP::ValueArg<std::string> kitti_times(
+        "", "kitti-times", "Both trajectories are KITTI poses, with these times", false, "", "FILE",
+        cmd);
     TCLAP::SwitchArg json("", "json", "Write JSON instead of a table", cmd);
     TCLAP::ValueArg<std::string> alignment(
         "", "align", "Alignment of the estimate to the truth: se3 (default), yaw or none", false,
@@ -61,11 +74,17 @@ std::optional<Options> parse(int argc, char** argv)
         cmd);
     TCLAP::ValueArg<std::string> points_truth(
         "", "points-truth", "True undistorted points (of taut-simulate)", false, "", "FILE", cmd);
+    TCLAP::ValueArg<std::string> plot(
+        "", "plot", "Draw the trajectory and the errors into that folder (needs gnuplot)", false,
+        "", "FOLDER", cmd);
+    TCLAP::ValueArg<std::string> plot_format(
+        "", "plot-format", "svg (default) or png", false, "svg", "NAME", cmd);
     if (!taut::parseCommandLine(cmd, argc, argv)) return {};
 
     Options options;
     options.truth = truth.getValue();
     options.estimate = estimate.getValue();
+    options.kitti_times = kitti_times.getValue();
     options.json = json.getValue();
     options.score.alignment = alignmentOf(alignment.getValue());
     options.score.min_coverage = min_coverage.getValue();
@@ -75,6 +94,8 @@ std::optional<Options> parse(int argc, char** argv)
     options.points_truth = points_truth.getValue();
     if (options.points.empty() != options.points_truth.empty())
         throw taut::UsageError("--points and --points-truth need each other");
+    options.plot_folder = plot.getValue();
+    options.plot_format = plotFormatOf(plot_format.getValue());
     if (min_poses.getValue() < 0) throw taut::UsageError("--min-poses is negative");
     options.score.min_poses = static_cast<std::size_t>(min_poses.getValue());
     return options;
@@ -83,14 +104,20 @@ std::optional<Options> parse(int argc, char** argv)
 void run(const Options& options)
 {
     const auto warn = [](const taut::Warning& w) { std::cerr << "warning: " << w.text << "\n"; };
-    const taut::Trajectory truth = taut::readTum(options.truth, warn);
-    const taut::Trajectory estimate = taut::readTum(options.estimate, warn);
-    const taut::Scores scores = taut::scoreTrajectory(truth, estimate, options.score);
+    const auto read = [&](const std::string& path)
+    {
+        return options.kitti_times.empty() ? taut::readTum(path, warn)
+                                           : taut::readKitti(path, options.kitti_times);
+    };
+    const taut::Trajectory truth = read(options.truth), estimate = read(options.estimate);
+    const taut::Scores scores = scoreTrajectory(truth, estimate, options.score, warn);
     std::optional<taut::PointScores> points;
     if (!options.points.empty())
         points =
             taut::scorePoints(options.points_truth, options.points, options.score.min_coverage);
     std::cout << (options.json ? scoresAsJson(scores, points) : scoresAsText(scores, points));
+    if (!options.plot_folder.empty())
+        taut::plotScores(scores, truth, options.plot_folder, options.plot_format);
 }
 }  // namespace
 

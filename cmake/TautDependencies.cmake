@@ -11,6 +11,10 @@ find_package(NLopt 2.7 REQUIRED CONFIG) # libnlopt-cxx-dev 2.7.1
 find_package(nanoflann 1.4 REQUIRED)    # libnanoflann-dev 1.4.3
 find_package(tsl-robin-map 1.2 REQUIRED) # robin-map-dev 1.2.1
 find_package(nlohmann_json 3.11 REQUIRED) # nlohmann-json3-dev 3.11.2
+find_program(GNUPLOT_PROGRAM gnuplot) # gnuplot-nox 5.4.4, optional: taut-evaluate --plot calls it
+if(NOT GNUPLOT_PROGRAM)
+  message(STATUS "gnuplot (Debian: gnuplot-nox) is absent: taut-evaluate --plot will not draw")
+endif()
 find_library(OSMESA_LIBRARY OSMesa REQUIRED) # libosmesa6-dev 22.3.6
 find_path(OSMESA_INCLUDE_DIR GL/osmesa.h REQUIRED)
 find_package(embree 3 QUIET) # libembree-dev 3.13.5; optional: simulation

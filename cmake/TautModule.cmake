@@ -32,6 +32,8 @@ function(taut_add_test name)
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support)
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gtest_main GTest::gmock
                                              taut_options)
+  target_compile_definitions(
+    test_${name} PRIVATE TAUT_DATA_DEFAULT="${PROJECT_SOURCE_DIR}/../shared/data")
   gtest_discover_tests(
     test_${name}
     TEST_PREFIX "${name}."

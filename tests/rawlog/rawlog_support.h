@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "data_folder.h"
 #include "numeric.h"
 #include "taut/core/WarningLog.h"
 #include "taut/rawlog/RawlogSource.h"
@@ -16,13 +17,6 @@ namespace taut::test
 {
 constexpr Time kStart = 1'700'000'000'000'000'000;
 constexpr Duration kMillisecond = 1'000'000;
-
-/** Where the recordings are; may not exist. */
-inline std::filesystem::path dataFolder()
-{
-    const char* given = std::getenv("TAUT_DATA");
-    return given ? given : TAUT_DATA_DEFAULT;
-}
 
 /** A folder of the running test's own, removed with it. */
 class RawlogTest : public testing::Test

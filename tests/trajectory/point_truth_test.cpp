@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "TemporaryFile.h"
+#include "temporary_file.h"
 
 using namespace taut;
 using taut::test::TemporaryFile;
@@ -71,12 +71,12 @@ TEST(PointTruth, MakesTheRoundTrip)
 
 TEST(PointTruth, BrokenFilesAreErrorsThatNameThem)
 {
-    const TemporaryFile good("", ".good"), bad("", ".bad");
+    const TemporaryFile good("", "points.good"), bad("", "points.bad");
     write(good, {{1, {{1, 2, 3}}}, {2, {{1, 2, 3}}}});
     const std::string content = good.content();
     const auto errorWith = [&](const std::string& bytes)
     {
-        std::ofstream(bad.path(), std::ios::binary) << bytes;
+        bad.write(bytes);
         return errorOf(good, bad);
     };
     EXPECT_EQ(errorWith(content), "no error");
@@ -96,7 +96,7 @@ TEST(PointTruth, BrokenFilesAreErrorsThatNameThem)
 
 TEST(PointScores, AreTheDistancesOfThePointsKnownToBoth)
 {
-    const TemporaryFile truth("", ".truth"), estimate("", ".estimate");
+    const TemporaryFile truth("", "points.truth"), estimate("", "points.estimate");
     write(truth, {{100'000, {{0, 0, 0}, kDropped, {1, 1, 1}}}, {200'000, {{0, 0, 0}, {5, 5, 5}}}});
     write(
         estimate, {{50'000, {{9, 9, 9}}},  // has no truth
@@ -117,7 +117,7 @@ TEST(PointScores, AreTheDistancesOfThePointsKnownToBoth)
 
 TEST(PointScores, SayWhyNothingCanBeCompared)
 {
-    const TemporaryFile truth("", ".truth"), estimate("", ".estimate");
+    const TemporaryFile truth("", "points.truth"), estimate("", "points.estimate");
     write(truth, {{100'000, {{0, 0, 0}}}});
     write(estimate, {{105'000, {{0, 0, 0}}}});
     EXPECT_THAT(errorOf(truth, estimate), HasSubstr("closest stamps differ by 0.000005000 s"));
@@ -129,7 +129,7 @@ TEST(PointScores, SayWhyNothingCanBeCompared)
 
 TEST(PointScores, OfTooFewPointsAreRefused)
 {
-    const TemporaryFile truth("", ".truth"), estimate("", ".estimate");
+    const TemporaryFile truth("", "points.truth"), estimate("", "points.estimate");
     write(truth, {{1'000'000, {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}}});
     write(estimate, {{1'000'000, {{0, 0, 0}, kDropped, kDropped}}});
     EXPECT_THAT(errorOf(truth, estimate), HasSubstr("holds 1 of the 3 true points"));
@@ -138,7 +138,7 @@ TEST(PointScores, OfTooFewPointsAreRefused)
 
 TEST(PointScores, OfTooFewScansAreRefused)
 {
-    const TemporaryFile truth("", ".truth"), estimate("", ".estimate");
+    const TemporaryFile truth("", "points.truth"), estimate("", "points.estimate");
     write(truth, {{1'000'000, {{0, 0, 0}}}, {2'000'000, {{0, 0, 0}}}, {3'000'000, {{0, 0, 0}}}});
     write(estimate, {{2'000'000, {{0, 0, 0}}}});
     EXPECT_THAT(errorOf(truth, estimate), HasSubstr("holds 1 of the 3 scans with true points"));

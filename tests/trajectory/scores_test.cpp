@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "data_folder.h"
 #include "motions.h"
 #include "numeric.h"
 #include "taut/trajectory/Interpolation.h"
+#include "taut/trajectory/TrajectoryFile.h"
 
 using namespace taut;
 using ::testing::HasSubstr;
@@ -175,11 +177,39 @@ TEST(Scores, InterpolateADenseTruthToASparseEstimate)
     Trajectory estimate;  // 10 Hz, between the stamps of the truth
     for (std::size_t i = 2; i < all.size(); i += 100) estimate.push_back(all[i]);
     const Scores scores = scoreTrajectory(truth, estimate);
-    EXPECT_EQ(scores.paired_poses, estimate.size());
+    EXPECT_EQ(scores.pairs.size(), estimate.size());
     // Linear interpolation is off by at most a dt^2 / 8, with a < 1.5 m/s^2 and 2 rad/s^2 here.
     EXPECT_LT(scores.absolute.position.max, 1.5 * 0.005 * 0.005 / 8);
     EXPECT_LT(scores.absolute.rotation_deg.max, 2 * 0.005 * 0.005 / 8 * kDegreesPerRadian);
     EXPECT_GT(scores.absolute.position.max, 1e-7);
+}
+
+TEST(Scores, WarnOfATruthThatIsSparserThanTheEstimate)
+{
+    std::vector<std::string> kinds;
+    const auto warn = [&](const Warning& w) { kinds.push_back(w.kind); };
+    const Trajectory sparse = test::lissajous(20, 1), dense = test::lissajous(20, 10);
+    scoreTrajectory(dense, sparse, {}, warn);
+    scoreTrajectory(dense, dense, {}, warn);
+    EXPECT_TRUE(kinds.empty());
+    scoreTrajectory(sparse, dense, {}, warn);
+    EXPECT_EQ(kinds, std::vector<std::string>{"sparse_truth"});
+}
+
+TEST(Scores, OfARealTruthAgainstASubsampledCopyAreZero)
+{
+    const auto path = test::dataFolder() / "hall_violent.gt.tum";
+    if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is absent";
+    const Trajectory truth = readTum(path.string());
+    Trajectory estimate;
+    for (std::size_t i = 7; i < truth.size(); i += 20) estimate.push_back(truth[i]);
+    const Scores scores = scoreTrajectory(truth, estimate);
+    EXPECT_EQ(scores.pairs.size(), estimate.size());
+    EXPECT_LT(scores.absolute.position.max, 1e-12);
+    EXPECT_LT(scores.absolute.rotation_deg.max, 1e-12);
+    EXPECT_NEAR(scores.truth_path, 45.3, 0.1);
+    for (const RelativeError& e : scores.over_time) EXPECT_LT(e.translation.max, 1e-12);
+    EXPECT_LT(scores.short_segments.all.translation_percent, 1e-12);
 }
 
 TEST(Scores, LeaveOutPosesInAGapOfTheTruth)
@@ -192,7 +222,7 @@ TEST(Scores, LeaveOutPosesInAGapOfTheTruth)
             truth.begin(), truth.end(),
             [&](const StampedPose& pose) { return second(pose) > 5.005 && second(pose) < 6.995; }),
         truth.end());
-    EXPECT_EQ(scoreTrajectory(truth, estimate).paired_poses, estimate.size() - 19);
+    EXPECT_EQ(scoreTrajectory(truth, estimate).pairs.size(), estimate.size() - 19);
 }
 
 TEST(Coverage, LeavesOutGapsAndTellsThem)

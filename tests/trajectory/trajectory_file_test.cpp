@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "TemporaryFile.h"
 #include "motions.h"
+#include "temporary_file.h"
 
 using namespace taut;
 using taut::test::TemporaryFile;
@@ -167,4 +167,18 @@ TEST(KittiFile, RefusesWhatIsNoRotation)
     {
         EXPECT_THAT(e.what(), HasSubstr(".txt:2: the left 3x3 part is not a rotation"));
     }
+}
+
+TEST(KittiFile, TakesItsStampsFromAFileOfTimes)
+{
+    const TemporaryFile poses("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 5 0 1 0 0 0 0 1 0\n", "poses.txt");
+    const TemporaryFile times("0.000000e+00\n1.037359e-01\n", "times.txt");
+    const Trajectory read = readKitti(poses.path(), times.path());
+    ASSERT_EQ(read.size(), 2u);
+    EXPECT_EQ(read[1].t, 103'735'900);
+    EXPECT_EQ(read[1].T_world_imu.p, Vector3d(5, 0, 0));
+    times.write("0\n");
+    EXPECT_THROW(readKitti(poses.path(), times.path()), std::runtime_error);
+    times.write("1\n1\n");
+    EXPECT_THROW(readKitti(poses.path(), times.path()), std::runtime_error);
 }

@@ -10,13 +10,13 @@ namespace
 void refuseTooLittle(const Scores& scores, const ScoreOptions& options)
 {
     char text[200];
-    if (scores.paired_poses < options.min_poses)
+    if (scores.pairs.size() < options.min_poses)
     {
         std::snprintf(
             text, sizeof text,
             "refused: only %zu of the estimate's %zu poses have a truth at their time, %zu are "
             "needed",
-            scores.paired_poses, scores.estimate_poses, options.min_poses);
+            scores.pairs.size(), scores.estimate_poses, options.min_poses);
         throw ScoreRefused(text);
     }
     if (scores.coverage.share < options.min_coverage)
@@ -71,15 +71,21 @@ Coverage coverageOf(const Trajectory& truth, const Trajectory& estimate, Duratio
 }
 
 Scores scoreTrajectory(
-    const Trajectory& truth, const Trajectory& estimate, const ScoreOptions& options)
+    const Trajectory& truth, const Trajectory& estimate, const ScoreOptions& options,
+    const WarningSink& warn)
 {
-    const PosePairs pairs = pairPoses(truth, estimate, options.max_truth_gap);
     Scores scores;
+    scores.pairs = pairPoses(truth, estimate, options.max_truth_gap);
+    const PosePairs& pairs = scores.pairs;
     scores.truth_poses = truth.size();
     scores.estimate_poses = estimate.size();
-    scores.paired_poses = pairs.size();
     scores.coverage = coverageOf(truth, estimate, options.max_estimate_gap);
     refuseTooLittle(scores, options);
+    if (warn && medianSpacing(truth) > medianSpacing(estimate) * 11 / 10)
+        warn(
+            {0, "sparse_truth",
+             "the truth has fewer poses a second than the estimate: the scores hold errors of its "
+             "interpolation"});
     for (std::size_t i = 1; i < pairs.size(); i++)
     {
         scores.truth_path += (pairs[i].truth.p - pairs[i - 1].truth.p).norm();

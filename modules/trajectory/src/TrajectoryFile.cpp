@@ -239,6 +239,27 @@ std::vector<Pose> readKitti(const std::string& path)
     return out;
 }
 
+Trajectory readKitti(const std::string& path, const std::string& times_path)
+{
+    std::vector<Time> times;
+    forLines(
+        times_path, 1,
+        [&](const std::vector<std::string>& words)
+        {
+            times.push_back(parseSeconds(words[0]));
+            if (times.size() > 1 && times.back() <= times[times.size() - 2])
+                throw std::invalid_argument("time does not increase");
+        });
+    const std::vector<Pose> poses = readKitti(path);
+    if (poses.size() != times.size())
+        throw std::runtime_error(
+            path + " has " + std::to_string(poses.size()) + " poses, " + times_path + " " +
+            std::to_string(times.size()) + " times");
+    Trajectory out;
+    for (std::size_t i = 0; i < poses.size(); i++) out.push_back({times[i], poses[i]});
+    return out;
+}
+
 void writeKitti(const std::string& path, const std::vector<Pose>& poses)
 {
     std::ofstream file(path);

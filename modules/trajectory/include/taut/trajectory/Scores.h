@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "taut/core/Warning.h"
 #include "taut/trajectory/Alignment.h"
 #include "taut/trajectory/RelativeErrors.h"
 #include "taut/trajectory/Statistics.h"
@@ -63,7 +64,8 @@ struct ScoreRefused : std::runtime_error
 
 struct Scores
 {
-    std::size_t truth_poses = 0, estimate_poses = 0, paired_poses = 0;
+    PosePairs pairs;  //!< what was scored
+    std::size_t truth_poses = 0, estimate_poses = 0;
     Coverage coverage;
     double truth_path = 0;     //!< length along the paired poses [m]
     double estimate_path = 0;  //!< [m]
@@ -75,7 +77,9 @@ struct Scores
 };
 
 /** Every score of an estimate. Throws ScoreRefused where it covers too little, std::runtime_error
- * where the alignment is not determined. */
+ * where the alignment is not determined. Warns (kind "sparse_truth") if the truth is the sparser of
+ * the two: the scores then hold errors of its interpolation. */
 Scores scoreTrajectory(
-    const Trajectory& truth, const Trajectory& estimate, const ScoreOptions& options = {});
+    const Trajectory& truth, const Trajectory& estimate, const ScoreOptions& options = {},
+    const WarningSink& warn = {});
 }  // namespace taut

@@ -53,6 +53,10 @@ void writeTum(const std::string& path, const Trajectory& trajectory);
 /** Poses T_world_body of a KITTI file. */
 std::vector<Pose> readKitti(const std::string& path);
 
+/** The same with their stamps, from a file of as many times in seconds, one a line ("times.txt").
+ */
+Trajectory readKitti(const std::string& path, const std::string& times_path);
+
 /** Numbers with 12 decimals. */
 void writeKitti(const std::string& path, const std::vector<Pose>& poses);
 }  // namespace taut

@@ -1,0 +1,146 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "motions.h"
+#include "taut/trajectory/PointTruth.h"
+#include "taut/trajectory/TrajectoryFile.h"
+#include "temporary_file.h"
+
+using namespace taut;
+using ::testing::HasSubstr;
+
+namespace
+{
+struct ProgramRun
+{
+    int exit_code = -1;
+    std::string output;  // of both streams
+};
+
+ProgramRun run(const std::string& arguments)
+{
+    ProgramRun out;
+    FILE* pipe = popen((TAUT_EVALUATE " " + arguments + " 2>&1").c_str(), "r");
+    std::array<char, 4096> buffer{};
+    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
+        out.output.append(buffer.data(), n);
+    const int status = pclose(pipe);
+    if (WIFEXITED(status)) out.exit_code = WEXITSTATUS(status);
+    return out;
+}
+
+/** Truth at 100 Hz, and an estimate at 10 Hz that is off by 3 cm and seen from another world. */
+class EvaluateApp : public testing::Test
+{
+ protected:
+    EvaluateApp()
+    {
+        writeTum(truth_, test::lissajous(20, 100));
+        const Pose T{expSO3({0, 0, 1}), {1, 2, 3}};
+        Trajectory estimate = test::moved(T, test::lissajous(20, 10));
+        for (std::size_t i = 0; i < estimate.size(); i++)
+            estimate[i].T_world_imu.p.z() += i % 2 == 0 ? 0.03 : -0.03;
+        writeTum(estimate_, estimate);
+    }
+    std::string files() const { return "--truth " + truth_ + " --estimate " + estimate_; }
+
+    test::TemporaryFolder folder_;
+    std::string truth_ = folder_ / "truth.tum", estimate_ = folder_ / "estimate.tum";
+};
+}  // namespace
+
+TEST_F(EvaluateApp, PrintsATable)
+{
+    const ProgramRun r = run(files());
+    EXPECT_EQ(r.exit_code, 0);
+    EXPECT_THAT(r.output, HasSubstr("coverage   100.0 % of 20.000 s"));
+    EXPECT_THAT(r.output, HasSubstr("ATE position"));
+    EXPECT_THAT(r.output, HasSubstr("KITTI 100..800 m         none"));
+}
+
+TEST_F(EvaluateApp, WritesJson)
+{
+    const ProgramRun r = run(files() + " --json --align yaw --rpe-seconds 2 --rpe-metres 3");
+    ASSERT_EQ(r.exit_code, 0);
+    const auto json = nlohmann::json::parse(r.output);
+    EXPECT_EQ(json["paired_poses"], 201);
+    EXPECT_EQ(json["alignment"], "yaw");
+    EXPECT_NEAR(json["ate"]["position_m"]["rmse"], 0.03, 1e-4);
+    EXPECT_EQ(json["rpe"]["over_time"][0]["delta_s"], 2);
+    EXPECT_EQ(json["rpe"]["over_distance"][0]["delta_m"], 3);
+    EXPECT_TRUE(json["kitti_segments"]["translation_percent"].is_null());
+    EXPECT_GT(json["short_segments"]["count"], 0);
+}
+
+TEST_F(EvaluateApp, ScoresPoints)
+{
+    for (const std::string name : {"truth", "estimate"})
+    {
+        PointTruthWriter writer(folder_ / (name + ".points"));
+        writer.write({test::kStart, {{1, 2, name == "truth" ? 3.0F : 3.25F}}});
+        writer.close();
+    }
+    const std::string truth = " --points-truth " + folder_ / "truth.points";
+    const ProgramRun r =
+        run(files() + " --json" + truth + " --points " + folder_ / "estimate.points");
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    EXPECT_EQ(nlohmann::json::parse(r.output)["points"]["rmse_m"], 0.25);
+    EXPECT_EQ(run(files() + truth).exit_code, 2);
+}
+
+TEST_F(EvaluateApp, RefusesWithExitCode1)
+{
+    writeTum(estimate_, test::lissajous(5, 10));
+    const ProgramRun r = run(files());
+    EXPECT_EQ(r.exit_code, 1);
+    EXPECT_THAT(r.output, HasSubstr("refused: the estimate covers 25.0 %"));
+    EXPECT_EQ(run(files() + " --min-coverage 0.2").exit_code, 0);
+}
+
+TEST_F(EvaluateApp, FailsWithExitCode1)
+{
+    std::ofstream(estimate_) << "1 2 3\n";
+    const ProgramRun r = run(files());
+    EXPECT_EQ(r.exit_code, 1);
+    EXPECT_THAT(r.output, HasSubstr("estimate.tum:1: 8 columns expected, found 3"));
+    EXPECT_EQ(run("--truth /none --estimate /none").exit_code, 1);
+}
+
+TEST_F(EvaluateApp, TellsBadUsageWithExitCode2)
+{
+    EXPECT_EQ(run("").exit_code, 2);
+    EXPECT_EQ(run(files() + " --unknown").exit_code, 2);
+    EXPECT_EQ(run(files() + " --align sim3").exit_code, 2);
+    EXPECT_EQ(run(files() + " --min-poses -3").exit_code, 2);
+    EXPECT_EQ(run(files() + " --rpe-metres 0").exit_code, 2);
+    EXPECT_EQ(run(files() + " --plot-format gif").exit_code, 2);
+    EXPECT_EQ(run("--help").exit_code, 0);
+    EXPECT_EQ(run("--version").exit_code, 0);
+}
+
+TEST_F(EvaluateApp, DrawsPlots)
+{
+    if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "gnuplot is absent";
+    for (const std::string format : {"svg", "png"})
+    {
+        const ProgramRun r =
+            run(files() + " --plot '" + folder_ / "a plot" + "' --plot-format " + format);
+        ASSERT_EQ(r.exit_code, 0) << r.output;
+        for (const char* name : {"trajectory.", "position_error.", "rotation_error."})
+            EXPECT_GT(std::filesystem::file_size(folder_ / "a plot/" + name + format), 2000u);
+    }
+}
+
+TEST_F(EvaluateApp, SaysWhenItCannotDraw)
+{
+    const ProgramRun r = run(files() + " --plot " + truth_);
+    EXPECT_EQ(r.exit_code, 1);
+    EXPECT_THAT(r.output, HasSubstr("ATE position")) << "the scores come all the same";
+}
