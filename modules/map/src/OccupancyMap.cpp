@@ -1,0 +1,116 @@
+#include "taut/map/OccupancyMap.h"
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace taut
+{
+namespace
+{
+octomap::point3d toOctomap(const Vector3d& p)
+{
+    return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+}
+
+template <class Write>
+void writeFile(const std::string& path, const Write& write)
+{
+    std::ofstream file(path, std::ios::binary);
+    if (!file || !write(file) || !file.flush())
+        throw std::runtime_error("cannot write the occupancy map to " + path);
+}
+
+/** Key of the cell twice as large that holds the cell of this key; the tree's origin stays. */
+octomap::OcTreeKey coarserKey(const octomap::OcTreeKey& key)
+{
+    constexpr int origin = 1 << 15;
+    octomap::OcTreeKey coarser;
+    for (unsigned i = 0; i < 3; i++)
+        coarser[i] = static_cast<octomap::key_type>(((key[i] - origin) >> 1) + origin);
+    return coarser;
+}
+}  // namespace
+
+void OccupancyMap::Config::declare(ConfigSection& section)
+{
+    section.key("resolution", resolution, {1e-3, 1e3}, "m, edge of a cell");
+    section.key("max_range", max_range, kPositive, "m, of a ray");
+    section.key("max_nodes", max_nodes, {1000, 1e9}, "more: the resolution is halved");
+}
+
+OccupancyMap::OccupancyMap(const Config& config)
+    : config_(config), tree_(std::make_unique<octomap::OcTree>(config.resolution))
+{
+}
+
+void OccupancyMap::insert(
+    Time t, const Vector3d& origin, const std::vector<Vector3d>& points, const WarningSink& warn)
+{
+    if (!origin.allFinite())
+        throw std::invalid_argument("OccupancyMap: the position of the sensor is not finite");
+    octomap::OcTreeKey key;
+    const auto fits = [&](const Vector3d& p)
+    { return tree_->coordToKeyChecked(toOctomap(p), key); };
+    octomap::Pointcloud cloud;
+    std::size_t finite = 0;
+    for (const Vector3d& point : points)
+    {
+        if (!point.allFinite()) continue;
+        finite++;
+        if (fits(origin) && fits(point)) cloud.push_back(toOctomap(point));
+    }
+    if (warn && cloud.size() < finite)
+        warn(
+            {t, "occupancy_range",
+             std::to_string(finite - cloud.size()) + " points left out: too far from the origin"});
+
+    tree_->insertPointCloud(
+        cloud, toOctomap(origin), config_.max_range, /*lazy_eval=*/false, /*discretize=*/true);
+    while (tree_->size() > static_cast<std::size_t>(config_.max_nodes))
+    {
+        const std::size_t before = tree_->size();
+        halveResolution();
+        std::ostringstream text;
+        text << "more than " << config_.max_nodes << " nodes: cells are now " << resolution()
+             << " m";
+        if (warn) warn({t, "occupancy_coarser", text.str()});
+        if (tree_->size() >= before) break;  // a handful of cells far apart
+    }
+}
+
+void OccupancyMap::halveResolution()
+{
+    auto coarser = std::make_unique<octomap::OcTree>(2 * tree_->getResolution());
+    for (auto leaf = tree_->begin_leafs(), end = tree_->end_leafs(); leaf != end; ++leaf)
+    {
+        // A leaf of 2^n cells a side has 2^(n-1) coarser ones; a single cell shares its own.
+        const unsigned cells = 1u << (tree_->getTreeDepth() - leaf.getDepth());
+        const unsigned coarse_cells = cells > 1 ? cells / 2 : 1;
+        const octomap::OcTreeKey first = coarserKey(leaf.getIndexKey());
+        for (unsigned i = 0; i < coarse_cells * coarse_cells * coarse_cells; i++)
+        {
+            const octomap::OcTreeKey key(
+                static_cast<octomap::key_type>(first[0] + i % coarse_cells),
+                static_cast<octomap::key_type>(first[1] + i / coarse_cells % coarse_cells),
+                static_cast<octomap::key_type>(first[2] + i / coarse_cells / coarse_cells));
+            const octomap::OcTreeNode* known = coarser->search(key);
+            if (!known || known->getLogOdds() < leaf->getLogOdds())
+                coarser->setNodeValue(key, leaf->getLogOdds(), /*lazy_eval=*/true);
+        }
+    }
+    coarser->updateInnerOccupancy();
+    coarser->prune();
+    tree_ = std::move(coarser);
+}
+
+void OccupancyMap::writeOt(const std::string& path) const
+{
+    writeFile(path, [&](std::ostream& file) { return tree_->write(file); });
+}
+
+void OccupancyMap::writeBt(const std::string& path) const
+{
+    writeFile(path, [&](std::ostream& file) { return tree_->writeBinaryConst(file); });
+}
+}  // namespace taut

@@ -1,0 +1,263 @@
+/** \file
+ * What every map must do: add a class name below to hold another one to it. */
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "surfaces.h"
+#include "taut/core/Plugins.h"
+#include "taut/map/Register.h"
+
+using namespace taut;
+using namespace taut::test;
+
+namespace
+{
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+class AnyMap : public ::testing::TestWithParam<const char*>
+{
+ protected:
+    void SetUp() override
+    {
+        registerMaps();
+        map = make();
+    }
+
+    std::shared_ptr<Map> make(const std::string& yaml = "{}") const
+    {
+        ConfigSection section(mrpt::containers::yaml::FromText(yaml), "map");
+        auto created = createPlugin<Map>(GetParam());
+        created->configure(section);
+        section.rejectUnknown();
+        return created;
+    }
+
+    /** Several scans of a patch. */
+    static void see(Map& seen_by, const Patch& patch, FeatureKind kind = FeatureKind::Plane)
+    {
+        Random random(3);
+        for (int scan = 0; scan < 10; scan++) seen_by.insert(patch.planePoints(random, 1000, kind));
+    }
+
+    static std::vector<MapPoint> queriesOn(const Patch& patch, FeatureKind kind, int count = 300)
+    {
+        Random random(5);
+        std::vector<MapPoint> queries;
+        for (int i = 0; i < count; i++)
+            queries.push_back(
+                {patch.at(random, 0.8) + random.uniform(-0.1, 0.1) * patch.normal(), kind});
+        return queries;
+    }
+
+    static std::vector<Correspondence> match(
+        const Map& in, const std::vector<MapPoint>& queries, int threads = 1)
+    {
+        Executor executor(threads);
+        std::vector<Correspondence> correspondences(3);  // not empty: must be replaced
+        in.match(queries, correspondences, executor);
+        EXPECT_EQ(correspondences.size(), queries.size());
+        return correspondences;
+    }
+
+    static void expectOnPlane(const std::vector<Correspondence>& found, const Patch& patch)
+    {
+        int planes = 0, right = 0;
+        for (const Correspondence& c : found)
+        {
+            if (c.surface == Surface::None) continue;
+            ASSERT_EQ(c.surface, Surface::Plane);
+            planes++;
+            EXPECT_NEAR(c.direction.norm(), 1, 1e-9);
+            EXPECT_TRUE(std::isfinite(c.sigma));
+            EXPECT_GE(c.sigma, 0);
+            EXPECT_LT(c.sigma, 0.1);
+            const double cosine = std::abs(c.direction.dot(patch.normal()));
+            const double off = std::abs(patch.normal().dot(c.point - patch.center));
+            right += cosine > std::cos(6 * M_PI / 180) && off < 0.03;
+        }
+        EXPECT_GT(planes, 0.9 * static_cast<double>(found.size()));
+        EXPECT_GT(right, 0.95 * planes);
+    }
+
+    std::shared_ptr<Map> map;
+};
+}  // namespace
+
+TEST_P(AnyMap, IsEmptyAtFirstAndMatchesNothing)
+{
+    EXPECT_TRUE(map->empty());
+    EXPECT_EQ(map->size(), 0u);
+    const Patch patch = tiltedPatch(Vector3d::Zero());
+    for (const FeatureKind kind : {FeatureKind::Plane, FeatureKind::Edge, FeatureKind::Any})
+        for (const Correspondence& c : match(*map, queriesOn(patch, kind)))
+            EXPECT_EQ(c.surface, Surface::None);
+    EXPECT_TRUE(match(*map, {}).empty());
+    map->slide(Vector3d::Zero());
+    map->clear();
+    EXPECT_TRUE(map->empty());
+}
+
+TEST_P(AnyMap, MatchesANoisyPlaneWithItsNormal)
+{
+    for (const FeatureKind kind : {FeatureKind::Plane, FeatureKind::Any})
+    {
+        map->clear();
+        const Patch patch = tiltedPatch({2, -1, 0.5});
+        see(*map, patch, kind);
+        EXPECT_FALSE(map->empty());
+        expectOnPlane(match(*map, queriesOn(patch, kind)), patch);
+    }
+}
+
+TEST_P(AnyMap, IsAsExactFarFromTheOriginOfTheWorld)
+{
+    const Patch patch = tiltedPatch({5000, -3000, 200});
+    map->slide(patch.center);
+    see(*map, patch);
+    expectOnPlane(match(*map, queriesOn(patch, FeatureKind::Plane)), patch);
+}
+
+TEST_P(AnyMap, MatchesNothingFarFromItsPoints)
+{
+    const Patch patch = tiltedPatch({2, -1, 0.5});
+    see(*map, patch);
+    for (const FeatureKind kind : {FeatureKind::Plane, FeatureKind::Edge, FeatureKind::Any})
+        for (const double distance : {5.0, -12.0, 1e7})
+        {
+            Patch far = patch;
+            far.center += distance * patch.normal();
+            for (const Correspondence& c : match(*map, queriesOn(far, kind)))
+                EXPECT_EQ(c.surface, Surface::None);
+        }
+}
+
+TEST_P(AnyMap, MatchesPlanarQueriesWithPlanesAndEdgesWithLines)
+{
+    const Patch patch = tiltedPatch({2, -1, 0.5});
+    see(*map, patch);
+    Random random(4);
+    for (int scan = 0; scan < 10; scan++) map->insert(patch.linePoints(random, 100));
+    for (const Correspondence& c : match(*map, queriesOn(patch, FeatureKind::Plane)))
+        EXPECT_NE(c.surface, Surface::Line);
+    for (const Correspondence& c : match(*map, queriesOn(patch, FeatureKind::Edge)))
+        EXPECT_NE(c.surface, Surface::Plane);
+}
+
+TEST_P(AnyMap, GivesTheSameWithAnyNumberOfThreads)
+{
+    const Patch patch = tiltedPatch({2, -1, 0.5});
+    see(*map, patch);
+    const auto queries = queriesOn(patch, FeatureKind::Any, 3000);
+    const auto one = match(*map, queries, 1);
+    for (const int threads : {2, 5})
+    {
+        const auto many = match(*map, queries, threads);
+        for (std::size_t i = 0; i < one.size(); i++)
+        {
+            EXPECT_EQ(one[i].surface, many[i].surface);
+            EXPECT_EQ(one[i].direction, many[i].direction);
+            EXPECT_EQ(one[i].point, many[i].point);
+            EXPECT_EQ(one[i].sigma, many[i].sigma);
+        }
+    }
+}
+
+TEST_P(AnyMap, GivesTheSameForTheSameInsertions)
+{
+    const Patch patch = tiltedPatch({2, -1, 0.5});
+    const auto other = make();
+    for (Map* m : {map.get(), other.get()})
+    {
+        see(*m, patch);
+        m->slide(patch.center);
+        see(*m, tiltedPatch({4, 3, 0}));
+    }
+    EXPECT_EQ(map->size(), other->size());
+    const auto queries = queriesOn(patch, FeatureKind::Any);
+    const auto a = match(*map, queries), b = match(*other, queries);
+    for (std::size_t i = 0; i < a.size(); i++)
+    {
+        EXPECT_EQ(a[i].surface, b[i].surface);
+        EXPECT_EQ(a[i].direction, b[i].direction);
+        EXPECT_EQ(a[i].point, b[i].point);
+    }
+}
+
+TEST_P(AnyMap, HoldsNoMoreForPointsSeenAgain)
+{
+    const Patch patch = tiltedPatch({2, -1, 0.5});
+    for (int i = 0; i < 5; i++) see(*map, patch);
+    const std::size_t before = map->size();
+    for (int i = 0; i < 20; i++) see(*map, patch);
+    EXPECT_LE(map->size(), before + before / 10);
+}
+
+TEST_P(AnyMap, ForgetsWhatLeavesTheWindow)
+{
+    map = make("window_radius: 20");
+    std::size_t most = 0;
+    for (int i = 0; i <= 100; i++)
+    {
+        const Patch patch = tiltedPatch({5.0 * i, 0, 0});
+        map->slide(patch.center);
+        see(*map, patch);
+        if (i <= 20) most = std::max(most, map->size());
+    }
+    EXPECT_LE(map->size(), most + most / 10);
+    const Patch first = tiltedPatch({0, 0, 0}), last = tiltedPatch({500, 0, 0});
+    for (const Correspondence& c : match(*map, queriesOn(first, FeatureKind::Plane)))
+        EXPECT_EQ(c.surface, Surface::None);
+    expectOnPlane(match(*map, queriesOn(last, FeatureKind::Plane)), last);
+
+    map->slide({-1000, 0, 0});
+    EXPECT_TRUE(map->empty());
+}
+
+TEST_P(AnyMap, ClearsAndLearnsAgain)
+{
+    const Patch patch = tiltedPatch({2, -1, 0.5});
+    see(*map, patch);
+    const std::size_t size = map->size();
+    map->clear();
+    EXPECT_TRUE(map->empty());
+    EXPECT_EQ(map->size(), 0u);
+    for (const Correspondence& c : match(*map, queriesOn(patch, FeatureKind::Plane)))
+        EXPECT_EQ(c.surface, Surface::None);
+    see(*map, patch);
+    EXPECT_EQ(map->size(), size);
+}
+
+TEST_P(AnyMap, IgnoresPointsThatAreNotFinite)
+{
+    const Patch patch = tiltedPatch({2, -1, 0.5});
+    map->insert({{{kNaN, 0, 0}, FeatureKind::Plane}, {{0, 1 / 0.0, 0}, FeatureKind::Edge}});
+    EXPECT_TRUE(map->empty());
+    see(*map, patch);
+    EXPECT_EQ(
+        match(*map, {{{0, kNaN, 0}, FeatureKind::Plane}, {{kNaN, 0, 0}, FeatureKind::Edge}})[0]
+            .surface,
+        Surface::None);
+    expectOnPlane(match(*map, queriesOn(patch, FeatureKind::Plane)), patch);
+}
+
+TEST_P(AnyMap, CopiesAreIndependent)
+{
+    const Patch patch = tiltedPatch({2, -1, 0.5});
+    see(*map, patch);
+    const auto copy = std::dynamic_pointer_cast<Map>(map->duplicateGetSmartPtr());
+    ASSERT_TRUE(copy);
+    map->clear();
+    EXPECT_FALSE(copy->empty());
+    expectOnPlane(match(*copy, queriesOn(patch, FeatureKind::Plane)), patch);
+}
+
+TEST_P(AnyMap, RejectsAWindowOfNoSize)
+{
+    EXPECT_THROW(make("window_radius: 0"), ConfigError);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, AnyMap, ::testing::Values("taut::KdTreeMap"),
+    [](const auto& test) { return std::string(test.param).substr(6); });
