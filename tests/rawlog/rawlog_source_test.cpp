@@ -1,4 +1,6 @@
-#include "rawlog_support.h"
+#include <mrpt/obs/CObservationComment.h>
+
+#include "mrpt_support.h"
 
 namespace taut::test
 {
@@ -29,7 +31,6 @@ TEST_F(RawlogSourceTest, GivesBackWhatTheWriterWroteInTheOrderOfTheFile)
     EXPECT_FALSE(scan.already_undistorted);
     EXPECT_LT((scan.T_imu_lidar.R - T_imu_lidar.R).norm(), 1e-12);
     EXPECT_LT((scan.T_imu_lidar.p - T_imu_lidar.p).norm(), 1e-12);
-    // The point at the origin of the row's formula does not exist: all hundred come back.
     ASSERT_EQ(scan.points.size(), expected.points.size());
     for (std::size_t i = 0; i < scan.points.size(); i++)
     {
@@ -41,6 +42,44 @@ TEST_F(RawlogSourceTest, GivesBackWhatTheWriterWroteInTheOrderOfTheFile)
     EXPECT_TRUE(log.progress.has_imu);
     EXPECT_FALSE(log.incomplete);
     EXPECT_TRUE(log.warnings.kept().empty());
+}
+
+TEST_F(RawlogSourceTest, ReadsSensoryFramesAndPlainFilesAsWell)
+{
+    LogBytes observations, frames;
+    for (int k = 0; k < 10; k++)
+    {
+        const Time t = kStart + k * 100 * kMillisecond;
+        observations.add(mrptImu(t)).add(mrptScan(t));
+        mrpt::obs::CSensoryFrame frame;
+        frame.insert(std::make_shared<mrpt::obs::CObservationIMU>(mrptImu(t)));
+        frame.insert(std::make_shared<mrpt::obs::CObservationVelodyneScan>(mrptScan(t)));
+        frames.add(mrpt::obs::CActionCollection()).add(frame);
+    }
+    writeFile(path("observations.rawlog"), observations.bytes());
+    writeFile(path("frames.rawlog"), frames.bytes());
+    for (const char* name : {"observations.rawlog", "frames.rawlog"})
+    {
+        const auto log = readAll(path(name));
+        EXPECT_EQ(log.imu.size(), 10u);
+        ASSERT_EQ(log.scans.size(), 10u);
+        for (std::size_t i = 0; i < 20; i++)
+            EXPECT_EQ(std::holds_alternative<Scan>(log.all[i]), i % 2 == 1);
+        EXPECT_EQ(log.scans[9].end, kStart + 999 * kMillisecond);
+        EXPECT_FALSE(log.incomplete);
+    }
+}
+
+TEST_F(RawlogSourceTest, PassesOverWhatItDoesNotUnderstand)
+{
+    mrpt::obs::CObservationComment comment;
+    comment.text = "fine weather";
+    LogBytes log;
+    log.add(comment).add(mrptScan(kStart)).add(comment).add(mrptScan(kStart + 100 * kMillisecond));
+    writeFile(path("a.rawlog"), log.bytes());
+    const auto content = readAll(path("a.rawlog"));
+    EXPECT_EQ(content.scans.size(), 2u);
+    EXPECT_FALSE(content.incomplete);
 }
 
 TEST_F(RawlogSourceTest, ReadsTheRecordings)

@@ -1,5 +1,6 @@
 #include "ImuUnitCheck.h"
 
+#include <cmath>
 #include <sstream>
 
 namespace taut
@@ -67,6 +68,8 @@ std::optional<std::string> ImuUnitCheck::judgeFirstSecond() const
     if (force < 5 || force > 20)
         return "the mean specific force of the first second is " + number(force) +
                ", not near 9.8 m/s^2: set accel_scale in the rig file";
+
+    if (std::abs(force - 9.81) > 0.4) return {};  // not at rest: gravity is not what is seen
 
     // What the gyro says that gravity turned from the middle of the first to that of the last
     // third, and what the accelerometer saw of it. A turn around the vertical is invisible to both.

@@ -5,19 +5,10 @@
 
 #include <stdexcept>
 
+#include "ErrorText.h"
+
 namespace taut
 {
-namespace
-{
-// MRPT appends a call stack to the text of its exceptions.
-std::string firstLine(const std::string& text)
-{
-    const auto from = text.find_first_not_of(" \n\r\t");
-    if (from == std::string::npos) return text;
-    return text.substr(from, text.find_first_of("\n\r", from) - from);
-}
-}  // namespace
-
 ObservationReader::ObservationReader(const std::string& path) : input_(path)
 {
     while (queue_.empty() && readObject())
@@ -59,7 +50,7 @@ bool ObservationReader::readObject()
     }
     catch (const std::exception& e)
     {
-        damage_ = firstLine(e.what());
+        damage_ = errorText(e);
     }
     return !finished_;
 }

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ErrorText.h"
 #include "ImuUnitCheck.h"
 #include "LabelExpression.h"
 #include "MrptConversion.h"
@@ -23,10 +24,11 @@ using mrpt::obs::CObservationIMU;
 
 namespace
 {
-constexpr Duration kLookahead = 2'000'000'000;   // in it the sensors must show up
-constexpr std::size_t kLookaheadCount = 20'000;  // whatever the stamps say
-constexpr Duration kDisorder = 1'000'000'000;    // between sensors, in the order of the file
-constexpr double kWorstBadShare = 0.05;          // of the points of a scan
+constexpr Duration kLookahead = 2'000'000'000;    // in it the sensors must show up
+constexpr std::size_t kLookaheadCount = 20'000;   // whatever the stamps say
+constexpr Duration kDisorder = 1'000'000'000;     // between sensors, in the order of the file
+constexpr Duration kLargestOverlap = 20'000'000;  // of sweeps that follow each other
+constexpr double kWorstBadShare = 0.05;           // of the points of a scan
 
 std::string seconds(Duration d)
 {
@@ -40,11 +42,6 @@ const std::string& firstGiven(const std::string& a, const std::string& b)
 {
     return a.empty() ? b : a;
 }
-
-bool describes(const std::string& rig_label, const std::string& label)
-{
-    return rig_label.empty() || std::regex_match(label, labelExpression(rig_label));
-}
 }  // namespace
 
 struct RawlogSource::Impl
@@ -57,7 +54,7 @@ struct RawlogSource::Impl
           imu("IMU", "--imu-label", firstGiven(c.imu_label, c.rig.imu.label))
     {
         lookAhead();
-        begin = progress.first + fromSeconds(config.from_time);
+        if (config.from_time > 0) begin = progress.first + fromSeconds(config.from_time);
         if (config.to_time < 1e9) end = progress.first + fromSeconds(config.to_time);
     }
 
@@ -67,6 +64,9 @@ struct RawlogSource::Impl
     void lookAhead();
     CObservation::Ptr read();
     void account(const CObservation& observation);
+    template <class RigPart>
+    void choose(
+        SensorChoice& choice, const std::string& label, RigPart& rig, std::string& chosen_label);
     void setBody(const CObservationIMU& observation);
     std::optional<Measurement> convert(const CObservation& observation);
     std::optional<Measurement> convertImu(const CObservationIMU& observation);
@@ -100,7 +100,7 @@ struct RawlogSource::Impl
     std::optional<Pose> T_imu_vehicle;
     ImuUnitCheck unit_check;
     std::optional<Time> last_imu, last_scan, last_scan_end;
-    Time begin = 0, end = std::numeric_limits<Time>::max();
+    Time begin = std::numeric_limits<Time>::min(), end = std::numeric_limits<Time>::max();
     bool warned_undistorted = false, finished = false;
 };
 
@@ -132,24 +132,40 @@ CObservation::Ptr RawlogSource::Impl::read()
 
 void RawlogSource::Impl::account(const CObservation& observation)
 {
-    progress.sensors[{observation.sensorLabel, observation.GetRuntimeClass()->className}]++;
-    if (isLidar(observation)) lidar.accepts(observation.sensorLabel);
-    if (dynamic_cast<const CObservationIMU*>(&observation)) imu.accepts(observation.sensorLabel);
-    progress.lidar_label = lidar.chosen().value_or("");
-    progress.imu_label = imu.chosen().value_or("");
+    const std::string class_name = observation.GetRuntimeClass()->className;
+    progress.sensors[{observation.sensorLabel, class_name.substr(class_name.rfind(':') + 1)}]++;
+    if (isLidar(observation))
+        choose(lidar, observation.sensorLabel, config.rig.lidar, progress.lidar_label);
+    else if (dynamic_cast<const CObservationIMU*>(&observation))
+        choose(imu, observation.sensorLabel, config.rig.imu, progress.imu_label);
+    else
+        return;  // stamps of other classes may be by another clock
     if (observation.timestamp == INVALID_TIMESTAMP) return;
     const Time t = toTime(observation.timestamp);
     if (progress.first == 0) progress.first = progress.now = t;
     progress.now = std::max(progress.now, t);
 }
 
+/* The rig's part is dropped if it describes another sensor than the one chosen. */
+template <class RigPart>
+void RawlogSource::Impl::choose(
+    SensorChoice& choice, const std::string& label, RigPart& rig, std::string& chosen_label)
+{
+    const bool is_first = !choice.chosen();
+    if (!choice.accepts(label) || !is_first) return;
+    chosen_label = label;
+    if (rig.label.empty() || std::regex_match(label, labelExpression(rig.label))) return;
+    warn(
+        0, "rig_unused",
+        "the rig file describes '" + rig.label + "', not the sensor in use, '" + label + "'");
+    rig = {};
+}
+
 void RawlogSource::Impl::setBody(const CObservationIMU& observation)
 {
     progress.has_imu = true;
-    Pose T_vehicle_imu = toPose(observation.sensorPose);
-    if (config.rig.imu.T_vehicle_imu && describes(config.rig.imu.label, observation.sensorLabel))
-        T_vehicle_imu = *config.rig.imu.T_vehicle_imu;
-    T_imu_vehicle = T_vehicle_imu.inverse();
+    const Pose T_vehicle_imu = toPose(observation.sensorPose);
+    T_imu_vehicle = config.rig.imu.T_vehicle_imu.value_or(T_vehicle_imu).inverse();
 }
 
 std::optional<Measurement> RawlogSource::Impl::next()
@@ -240,7 +256,6 @@ std::optional<Measurement> RawlogSource::Impl::convertImu(const CObservationIMU&
     }
     constexpr TIMUDataIndex accel[] = {IMU_X_ACC, IMU_Y_ACC, IMU_Z_ACC};
     constexpr TIMUDataIndex gyro[] = {IMU_WX, IMU_WY, IMU_WZ};
-    const bool mine = describes(config.rig.imu.label, observation.sensorLabel);
     for (int i = 0; i < 3; i++)
     {
         if (!observation.has(accel[i]) || !observation.has(gyro[i]))
@@ -248,8 +263,8 @@ std::optional<Measurement> RawlogSource::Impl::convertImu(const CObservationIMU&
             skip(sample.t, "imu_invalid", "an IMU sample lacks a rate or a specific force");
             return {};
         }
-        sample.accel[i] = observation.get(accel[i]) * (mine ? config.rig.imu.accel_scale : 1);
-        sample.gyro[i] = observation.get(gyro[i]) * (mine ? config.rig.imu.gyro_scale : 1);
+        sample.accel[i] = observation.get(accel[i]) * config.rig.imu.accel_scale;
+        sample.gyro[i] = observation.get(gyro[i]) * config.rig.imu.gyro_scale;
     }
     if (!sample.accel.allFinite() || !sample.gyro.allFinite())
     {
@@ -280,22 +295,18 @@ Pose RawlogSource::Impl::lidarPose(const CObservation& observation) const
 {
     mrpt::poses::CPose3D pose;
     observation.getSensorPose(pose);
-    Pose T_vehicle_lidar = toPose(pose);
-    if (config.rig.lidar.T_vehicle_lidar &&
-        describes(config.rig.lidar.label, observation.sensorLabel))
-        T_vehicle_lidar = *config.rig.lidar.T_vehicle_lidar;
+    const Pose T_vehicle_lidar = config.rig.lidar.T_vehicle_lidar.value_or(toPose(pose));
     return T_imu_vehicle ? *T_imu_vehicle * T_vehicle_lidar : T_vehicle_lidar;
 }
 
 std::optional<Measurement> RawlogSource::Impl::convertLidar(const CObservation& observation)
 {
-    const bool mine = describes(config.rig.lidar.label, observation.sensorLabel);
-    const Duration clock_offset = mine ? fromSeconds(config.rig.lidar.clock_offset) : 0;
+    const Duration clock_offset = fromSeconds(config.rig.lidar.clock_offset);
     const Time t = toTime(observation.timestamp) + clock_offset;
     if (t < begin || t > end || enoughScans()) return {};
     try
     {
-        ScanBuilder points = observationToPoints(observation);
+        ScanBuilder points = observationToPoints(observation, config.rig.lidar);
         Scan scan = points.finish();
         scan.stamp += clock_offset;
         scan.end += clock_offset;
@@ -317,7 +328,7 @@ std::optional<Measurement> RawlogSource::Impl::convertLidar(const CObservation& 
     }
     catch (const std::exception& e)
     {
-        skip(t, "scan_invalid", std::string("a scan cannot be used: ") + e.what());
+        skip(t, "scan_invalid", "a scan cannot be used: " + errorText(e));
         return {};
     }
 }
@@ -337,6 +348,12 @@ bool RawlogSource::Impl::checkScanTime(const Scan& scan)
                 : "the LiDAR's time (" + what + " of the scan) goes backward by " + seconds(back));
         return false;
     }
+    if (last_scan_end && scan.stamp < *last_scan_end - kLargestOverlap)
+        warn(
+            scan.stamp, "scan_overlap",
+            "a scan begins " + seconds(*last_scan_end - scan.stamp) +
+                " before the end of the one before: do the stamps come from another clock than "
+                "the times of the points?");
     last_scan = scan.stamp;
     last_scan_end = scan.end;
     return true;

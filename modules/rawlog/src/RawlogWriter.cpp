@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
 #include <vector>
 
 #include "GzOutput.h"
@@ -19,6 +21,16 @@ using namespace mrpt::obs;
 struct RawlogWriter::Impl
 {
     Impl(const std::string& path, const RawlogWriterConfig& c) : config(c), output(path) {}
+
+    CObservationVelodyneScan lidarObservation(
+        Time stamp, const std::string& label, const Pose& T_imu_lidar) const
+    {
+        CObservationVelodyneScan o;
+        o.timestamp = o.originalReceivedTimestamp = toMrptTime(stamp);
+        o.sensorLabel = label.empty() ? config.lidar_label : label;
+        o.sensorPose = toMrptPose(config.T_vehicle_imu * T_imu_lidar);
+        return o;
+    }
 
     void write(const CObservation& observation)
     {
@@ -56,10 +68,7 @@ void RawlogWriter::write(const ImuSample& sample)
 
 void RawlogWriter::write(const Scan& scan)
 {
-    CObservationVelodyneScan o;
-    o.timestamp = o.originalReceivedTimestamp = toMrptTime(scan.stamp);
-    o.sensorLabel = scan.sensor_label.empty() ? impl_->config.lidar_label : scan.sensor_label;
-    o.sensorPose = toMrptPose(impl_->config.T_vehicle_imu * scan.T_imu_lidar);
+    auto o = impl_->lidarObservation(scan.stamp, scan.sensor_label, scan.T_imu_lidar);
     auto& cloud = o.point_cloud;
     for (const auto& point : scan.points)
     {
@@ -71,6 +80,18 @@ void RawlogWriter::write(const Scan& scan)
         cloud.timestamp.push_back(toMrptTime(scan.timeOf(point)));
         cloud.laser_id.push_back(static_cast<std::int16_t>(point.ring));
     }
+    impl_->write(o);
+}
+
+void RawlogWriter::write(const PacketScan& scan)
+{
+    auto o = impl_->lidarObservation(scan.stamp, scan.sensor_label, scan.T_imu_lidar);
+    using RawPacket = CObservationVelodyneScan::TVelodyneRawPacket;
+    static_assert(sizeof(RawPacket) == velodyne::kPacketBytes);
+    static_assert(std::is_trivially_copyable_v<RawPacket>);
+    o.scan_packets.resize(scan.packets.size());
+    for (std::size_t i = 0; i < scan.packets.size(); i++)
+        std::memcpy(&o.scan_packets[i], scan.packets[i].data(), velodyne::kPacketBytes);
     impl_->write(o);
 }
 

@@ -25,7 +25,7 @@ struct RawlogConfig
     std::string path;
     std::string lidar_label;  //!< regular expression; empty = the rig's, or the only LiDAR there
     std::string imu_label;    //!< regular expression; empty = the rig's, or the only IMU there
-    double from_time = 0;     //!< [s] since the first stamp of the log; earlier data is not used
+    double from_time = 0;     //!< [s] since the log's first stamp; 0 = all of it
     double to_time = std::numeric_limits<double>::infinity();  //!< [s]; no scan begins later
     int only_first_n = 0;  //!< end after that many scans; 0 = all
     Rig rig;               //!< what overrides the poses, units and clocks of the log
@@ -34,7 +34,7 @@ struct RawlogConfig
 /** How far the reading is, and what was found up to there. */
 struct RawlogProgress
 {
-    Time first = 0;                //!< first stamp of the log
+    Time first = 0;                //!< first stamp of a LiDAR or IMU
     Time now = 0;                  //!< latest stamp read
     std::uint64_t bytes_read = 0;  //!< of the file as it is on the disk: compressed if it is so
     std::uint64_t bytes_total = 0;
@@ -52,6 +52,25 @@ struct RawlogProgress
     }
 };
 
+/** Measurements one after the other. */
+class MeasurementStream
+{
+ public:
+    MeasurementStream() = default;
+    virtual ~MeasurementStream() = default;
+    MeasurementStream(const MeasurementStream&) = delete;
+    MeasurementStream& operator=(const MeasurementStream&) = delete;
+
+    /** The next measurement, or nothing at the end. */
+    virtual std::optional<Measurement> next() = 0;
+
+    /** As of the measurement last given out. */
+    virtual RawlogProgress progress() const = 0;
+
+    /** True at the end of a file that ended early or was damaged; the cause is in the warning. */
+    virtual bool incomplete() const = 0;
+};
+
 /** Streams the measurements of one LiDAR and one IMU out of a rawlog (observation or sensory-frame
  * format, gz or plain), in the order of the file, with memory bounded by about 2 s of it.
  *
@@ -66,32 +85,29 @@ struct RawlogProgress
  *   imu_invalid        values that are missing or not finite
  *   imu_units          values that contradict m/s^2 and rad/s (used as they are)
  *   imu_late           the IMU appeared later than 2 s into the log
+ *   scan_overlap       a scan begins 20 ms or more before the end of the one before (used)
  *   scan_invalid       point vectors of different lengths, packets that cannot be decoded
  *   scan_empty         no valid point
  *   scan_bad_points    more than 5 % of the points not finite or with an impossible time (used)
  *   scan_undistorted   all points carry the same time (used, Scan::already_undistorted)
+ *   rig_unused         a part of the rig describes another sensor than the one in use
  *   no_imu             an IMU label was asked for and the log ended without one
  *
  * Scan::end is the time of the last point, the dropped ones included: they tell the end of the
  * sweep as well as the others. */
-class RawlogSource
+class RawlogSource : public MeasurementStream
 {
  public:
     /** Opens the log and reads its first 2 s. Throws std::runtime_error, naming the file, if it is
      * missing, empty or no rawlog, and if a label is ambiguous. */
     explicit RawlogSource(const RawlogConfig& config, WarningSink warn = {});
-    ~RawlogSource();
-    RawlogSource(const RawlogSource&) = delete;
-    RawlogSource& operator=(const RawlogSource&) = delete;
+    ~RawlogSource() override;
 
-    /** The next measurement, or nothing at the end. Throws std::runtime_error if a second sensor of
-     * a kind appears, or if the whole log had no LiDAR. */
-    std::optional<Measurement> next();
-
-    RawlogProgress progress() const;
-
-    /** True if the file ended early or was damaged; the cause is in the warning. */
-    bool incomplete() const;
+    /** Throws std::runtime_error if a second sensor of a kind appears, or if the whole log had no
+     * LiDAR. */
+    std::optional<Measurement> next() override;
+    RawlogProgress progress() const override;
+    bool incomplete() const override;
 
  private:
     struct Impl;

@@ -2,9 +2,11 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "taut/core/Imu.h"
 #include "taut/core/Scan.h"
+#include "taut/rawlog/velodyne/PacketWriter.h"
 
 namespace taut
 {
@@ -15,8 +17,18 @@ struct RawlogWriterConfig
     Pose T_vehicle_imu;  //!< sensorPose of the IMU
 };
 
+/** A sweep as a Velodyne sends it. */
+struct PacketScan
+{
+    Time stamp = 0;  //!< of the first firing of the first packet
+    std::vector<velodyne::Packet> packets;
+    Pose T_imu_lidar;
+    std::string sensor_label;  //!< empty: RawlogWriterConfig::lidar_label
+};
+
 /** Writes an observation-only rawlog that MRPT's programs and RawlogSource read: CObservationIMU,
- * and CObservationVelodyneScan with the cloud filled point by point. Compressed at level 1.
+ * and CObservationVelodyneScan with the cloud filled point by point, or with raw packets.
+ * Compressed at level 1.
  *
  * What a rawlog can hold of a scan: times to 100 ns, intensities as whole numbers of 0 to 255
  * (clamped), coordinates exactly; Scan::end becomes the time of the last point.
@@ -33,9 +45,10 @@ class RawlogWriter
     RawlogWriter(const RawlogWriter&) = delete;
     RawlogWriter& operator=(const RawlogWriter&) = delete;
 
-    /** Both throw std::runtime_error if the disk does not take it. */
+    /** All throw std::runtime_error if the disk does not take it. */
     void write(const ImuSample& sample);
     void write(const Scan& scan);
+    void write(const PacketScan& scan);
 
     /** Completes the file and gives it its name, replacing an older one. Throws std::runtime_error.
      */

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "taut/core/Geometry.h"
 #include "taut/core/Imu.h"
@@ -14,6 +15,8 @@ struct LidarRig
     std::string label;  //!< regular expression of the sensor described; empty = any
     std::optional<Pose> T_vehicle_lidar;
     double clock_offset = 0;  //!< [s] added to the LiDAR's stamps to get the IMU's clock
+    /** Elevation of the first and the last row of range images, the others evenly between [rad]. */
+    std::optional<std::pair<double, double>> row_elevations;
 };
 
 /** Facts of the IMU that override the log's. */
@@ -26,10 +29,18 @@ struct ImuRig
     std::optional<ImuNoise> noise;
 };
 
-/** A sensor set, as a rig file describes it. */
+/** A sensor set: what the log does not say, or says wrongly. A part whose label does not match the
+ * sensor in use is not applied. */
 struct Rig
 {
     LidarRig lidar;
     ImuRig imu;
 };
+
+/** Reads a rig file (YAML; config/rig-example.yaml shows every key). Throws ConfigError naming the
+ * file and the key that is unknown or wrong. */
+Rig loadRig(const std::string& path);
+
+/** The same from text; `name` stands for the file in messages. */
+Rig parseRig(const std::string& yaml_text, const std::string& name = "rig");
 }  // namespace taut
