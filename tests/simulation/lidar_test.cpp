@@ -14,6 +14,7 @@ LidarConfig noiseFree()
 {
     LidarConfig config = lidarPreset(LidarType::Vlp16);
     config.range_noise = config.range_step = config.dropout = config.detection_range = 0;
+    config.divergence = 0;
     config.T_imu_lidar = {expSO3(Vector3d(0.1, -0.2, 0.3)), Vector3d(0.1, 0.05, -0.15)};
     return config;
 }

@@ -1,8 +1,9 @@
 #include "taut/simulation/Lidar.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 #include "taut/simulation/Random.h"
 
@@ -15,17 +16,82 @@ constexpr double kDegree = M_PI / 180;
 
 std::unique_ptr<LidarPattern> patternOf(const LidarConfig& config)
 {
+    switch (config.type)
+    {
+        case LidarType::Vlp16:
+            break;
+        case LidarType::Hdl32:
+            return makeHdl32Pattern(config.rotation_rate);
+        case LidarType::Hdl64:
+            return makeHdl64Pattern(config.rotation_rate);
+        case LidarType::Os1_64:
+            return makeOs1Pattern(64, config.rotation_rate);
+        case LidarType::Os1_128:
+            return makeOs1Pattern(128, config.rotation_rate);
+        case LidarType::Rosette:
+            return makeRosettePattern(config.rotation_rate);
+    }
     return makeVlp16Pattern(config.rotation_rate);
+}
+
+/** Light that comes back, against that of a white wall at 1 m. */
+double signalOf(const Hit& hit, const Vector3d& direction)
+{
+    return hit.reflectivity * -hit.normal.dot(direction) / (hit.range * hit.range);
+}
+
+/** What a beam of some width measures. Besides its middle, two opposite rays of it are cast. Where
+ * all three meet one plane, the middle is what is measured. At an edge, the surfaces that are not
+ * told apart by the pulse mix (a range between them, weighted by their light), and of others the
+ * brightest counts. */
+std::optional<Hit> castBeam(
+    const RayCaster& world, const Vector3d& origin, const Vector3d& direction,
+    const LidarConfig& config, double turn, double radius)
+{
+    constexpr double flat = 0.01;         // off the plane of the middle [m]
+    constexpr double pulse_length = 0.5;  // surfaces closer than this mix [m]
+    const auto middle = world.cast(origin, direction, config.max_range);
+    if (config.divergence <= 0) return middle;
+    const Vector3d u = direction.unitOrthogonal(), v = direction.cross(u);
+    const Vector3d aside =
+        config.divergence / 2 * radius * (std::cos(turn) * u + std::sin(turn) * v);
+
+    std::array<std::optional<Hit>, 3> hits{middle, {}, {}};
+    bool one_plane = middle.has_value();
+    for (const int side : {-1, 1})
+    {
+        const Vector3d ray = (direction + side * aside).normalized();
+        auto& hit = hits[side < 0 ? 1 : 2];
+        hit = world.cast(origin, ray, config.max_range);
+        one_plane =
+            one_plane && hit &&
+            std::abs(middle->normal.dot(hit->range * ray - middle->range * direction)) < flat;
+    }
+    if (one_plane) return middle;
+
+    const auto signal = [&](const Hit& h) { return signalOf(h, direction); };
+    const std::optional<Hit>* brightest = nullptr;
+    for (const auto& h : hits)
+        if (h && (!brightest || signal(*h) > signal(**brightest))) brightest = &h;
+    if (!brightest) return {};
+    double sum = 0, weight = 0;
+    for (const auto& h : hits)
+        if (h && std::abs(h->range - (*brightest)->range) < pulse_length)
+        {
+            sum += signal(*h) * h->range;
+            weight += signal(*h);
+        }
+    Hit mixed = **brightest;
+    mixed.range = sum / weight;
+    return mixed;
 }
 
 /** Part of the shots that come back, by the light received relative to the least that is detected.
  */
 double detectionProbability(const Hit& hit, const Vector3d& direction, double detection_range)
 {
-    const double cosine = -hit.normal.dot(direction);
-    const double ratio = detection_range / hit.range;
-    const double signal = hit.reflectivity * cosine * ratio * ratio;
-    return signal / (signal + 1 / (1e-9 + signal * signal));  // logistic in the logarithm
+    const double signal = signalOf(hit, direction) * detection_range * detection_range;
+    return 1 / (1 + std::pow(std::max(signal, 1e-3), -4));  // logistic in the logarithm
 }
 }  // namespace
 
@@ -61,9 +127,10 @@ std::vector<Lidar::Return> Lidar::castAll(
             // Drawn whether used or not: what happens to one shot does not change the noise of
             // others.
             const double noise = random.normal(), luck = random.uniform(), loss = random.uniform();
+            const double turn = random.uniform(0, M_PI), radius = std::sqrt(random.uniform());
             const Pose T = motion.poseAt(toSeconds(kStart + shot.t)) * config_.T_imu_lidar;
             const Vector3d direction = T.R * shot.direction;
-            const auto hit = world.cast(T.p, direction, config_.max_range);
+            const auto hit = castBeam(world, T.p, direction, config_, turn, radius);
             if (!hit || loss < config_.dropout) continue;
             if (config_.detection_range > 0 &&
                 luck > detectionProbability(*hit, direction, config_.detection_range))
@@ -117,19 +184,64 @@ SimulatedScan Lidar::sweep(
     return result;
 }
 
+// Ranges, noise and widths of the beams are those of the data sheets as far as they tell; the
+// detection range is set so that a wall of 10 % is seen as far as the data sheet says, or else by
+// analogy.
 LidarConfig lidarPreset(LidarType type)
 {
     LidarConfig c;
     c.type = type;
-    c.range_step = 0.002;
-    c.detection_range = 110;
     c.dropout = 0.002;
+    c.range_step = 0.002;
+    switch (type)
+    {
+        case LidarType::Vlp16:  // 100 m, +-3 cm; beam 3.0 mrad (63-9243)
+            c.detection_range = 130;
+            c.divergence = 3.0e-3;
+            break;
+        case LidarType::Hdl32:  // 80 to 100 m, +-2 cm; 2.8 mrad (63-9113)
+            c.range_noise = 0.015;
+            c.detection_range = 130;
+            c.divergence = 2.8e-3;
+            break;
+        case LidarType::Hdl64:  // 120 m, < 2 cm; 50 m at 10 %; 2.0 mrad (63-HDL64ES2)
+            c.max_range = 120;
+            c.min_range = 0.9;
+            c.range_noise = 0.015;
+            c.detection_range = 160;
+            c.divergence = 2.0e-3;
+            break;
+        case LidarType::Os1_64:
+        case LidarType::Os1_128:  // 120 m, 45 m at 10 %, +-1.5 to 3 cm; 0.18 degrees (OS1 data
+                                  // sheet)
+            c.max_range = 120;
+            c.range_noise = 0.015;
+            c.range_step = 0.001;
+            c.detection_range = 145;
+            c.divergence = 3.1e-3;
+            break;
+        case LidarType::Rosette:  // 90 m at 10 %, 2 cm at 20 m; 0.03 x 0.28 degrees (Mid-70 manual)
+            c.max_range = 260;
+            c.min_range = 0.1;
+            c.range_step = 0.001;
+            c.detection_range = 285;
+            c.divergence = 1.6e-3;  // a circle of the same area
+            break;
+    }
     return c;
 }
 
 void declare(ConfigSection& section, LidarConfig& config)
 {
-    section.choice<LidarType>("type", config.type, {{"VLP-16", LidarType::Vlp16}}, "sensor");
+    section.choice<LidarType>(
+        "type", config.type,
+        {{"VLP-16", LidarType::Vlp16},
+         {"HDL-32E", LidarType::Hdl32},
+         {"HDL-64E", LidarType::Hdl64},
+         {"OS1-64", LidarType::Os1_64},
+         {"OS1-128", LidarType::Os1_128},
+         {"rosette", LidarType::Rosette}},
+        "sensor that the other keys change; rosette = Livox-like");
     const Pose T_imu_lidar = config.T_imu_lidar;
     config = lidarPreset(config.type);
     config.T_imu_lidar = T_imu_lidar;
@@ -142,6 +254,8 @@ void declare(ConfigSection& section, LidarConfig& config)
         "detection_range", config.detection_range, kNotNegative,
         "m, where half of the shots at a white wall return; 0 = all");
     section.key("dropout", config.dropout, {0, 1}, "part of the shots lost for no reason");
+    section.key(
+        "divergence", config.divergence, {0, 0.1}, "rad, full angle of the beam; 0 = a line");
 
     Vector3d angles(0.8, -1.4, 3.0);  // degrees: no mount is perfect
     Vector3d p(0.04, -0.03, 0.12);

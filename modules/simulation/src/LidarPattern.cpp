@@ -51,6 +51,46 @@ class SpinningPattern : public LidarPattern
     std::vector<Laser> lasers_;
     double firing_period_, rate_;
 };
+
+class RosettePattern : public LidarPattern
+{
+ public:
+    explicit RosettePattern(double sweep_rate)
+        : shots_(static_cast<std::int64_t>(std::llround(kPointRate / sweep_rate)))
+    {
+    }
+
+    std::vector<Shot> sweep(int k) const override
+    {
+        std::vector<Shot> shots;
+        for (std::int64_t i = k * shots_; i < (k + 1) * shots_; i++)
+        {
+            Shot shot;
+            shot.t = ticked(static_cast<double>(i) / kPointRate);
+            const double t = toSeconds(shot.t);
+            const double first = 2 * M_PI * kFirstPrism * t, second = 2 * M_PI * kSecondPrism * t;
+            // Each prism bends the beam by the same small angle, in the direction it is turned to.
+            const double y = kBend * (std::cos(first) + std::cos(second));
+            const double z = kBend * (std::sin(first) + std::sin(second));
+            const double angle = std::hypot(y, z);
+            const double sine_over = angle > 1e-9 ? std::sin(angle) / angle : 1;
+            shot.direction = {std::cos(angle), sine_over * y, sine_over * z};
+            shots.push_back(shot);
+        }
+        return shots;
+    }
+    Duration period() const override
+    {
+        return fromSeconds(static_cast<double>(shots_) / kPointRate);
+    }
+    int rings() const override { return 0; }
+
+ private:
+    static constexpr double kPointRate = 100000;                                     // [1/s]
+    static constexpr double kFirstPrism = 7294.0 / 60, kSecondPrism = -4664.0 / 60;  // [Hz]
+    static constexpr double kBend = 70.4 / 4 * kDegree;  // of each prism
+    std::int64_t shots_;
+};
 }  // namespace
 
 std::unique_ptr<LidarPattern> makeSpinningPattern(
@@ -67,9 +107,50 @@ std::unique_ptr<LidarPattern> makeVlp16Pattern(double rotation_rate)
     std::vector<Laser> lasers;
     for (int i = 0; i < 16; i++)
     {
-        const double elevation = i % 2 == 0 ? -15 + i : i;  // -15 1 -13 3 ... -1 15
+        const double elevation = i % 2 == 0 ? -15 + i : i;
         lasers.push_back({elevation * kDegree, 0, 2.304e-6 * i});
     }
     return makeSpinningPattern(std::move(lasers), 55.296e-6, rotation_rate);
+}
+
+std::unique_ptr<LidarPattern> makeHdl32Pattern(double rotation_rate)
+{
+    std::vector<Laser> lasers;
+    for (int i = 0; i < 32; i++)
+    {
+        const int row = i % 2 == 0 ? i / 2 : 16 + i / 2;  // from below
+        lasers.push_back({(-92.0 + 4 * row) / 3 * kDegree, 0, 1.152e-6 * i});
+    }
+    return makeSpinningPattern(std::move(lasers), 46.08e-6, rotation_rate);
+}
+
+std::unique_ptr<LidarPattern> makeHdl64Pattern(double rotation_rate)
+{
+    constexpr double sequence = 48e-6;
+    std::vector<Laser> lasers;
+    for (int i = 0; i < 32; i++)
+    {
+        const double delay = sequence / 32 * i;
+        lasers.push_back({(2 - i / 3.0) * kDegree, 0, delay});
+        lasers.push_back({(-8.83 - i / 2.0) * kDegree, 0, delay});
+    }
+    return makeSpinningPattern(std::move(lasers), sequence, rotation_rate);
+}
+
+std::unique_ptr<LidarPattern> makeOs1Pattern(int rows, double rotation_rate)
+{
+    const double half_view = rows == 64 ? 16.6 : 21.4, stagger = rows == 64 ? 2.11 : 2.81;
+    std::vector<Laser> lasers;
+    for (int i = 0; i < rows; i++)
+    {
+        const double elevation = half_view * (1 - 2.0 * i / (rows - 1));
+        lasers.push_back({elevation * kDegree, (1.5 - i % 4) * stagger * kDegree, 0});
+    }
+    return makeSpinningPattern(std::move(lasers), 1 / (1024 * rotation_rate), rotation_rate);
+}
+
+std::unique_ptr<LidarPattern> makeRosettePattern(double sweep_rate)
+{
+    return std::make_unique<RosettePattern>(sweep_rate);
 }
 }  // namespace taut::simulation

@@ -119,4 +119,74 @@ void addRoom(Mesh& mesh, const Vector3d& min, const Vector3d& max, float reflect
 {
     addBox(mesh, {Matrix3d::Identity(), (min + max) / 2}, max - min, reflectivity);
 }
+
+void addWall(
+    Mesh& mesh, const Pose& T, double length, double height, const std::vector<Recess>& recesses,
+    float reflectivity)
+{
+    // The edges of the recesses cut the wall in cells, each of which is wall or recess as a whole.
+    std::vector<double> xs{0, length}, zs{0, height};
+    for (const Recess& r : recesses)
+    {
+        xs.insert(xs.end(), {r.left, r.right});
+        zs.insert(zs.end(), {r.bottom, r.top});
+    }
+    for (auto* cuts : {&xs, &zs})
+    {
+        std::sort(cuts->begin(), cuts->end());
+        cuts->erase(std::unique(cuts->begin(), cuts->end()), cuts->end());
+    }
+    const auto at = [&T](double x, double y, double z) { return T * Vector3d(x, y, z); };
+    for (std::size_t i = 0; i + 1 < xs.size(); i++)
+        for (std::size_t k = 0; k + 1 < zs.size(); k++)
+        {
+            const double x = (xs[i] + xs[i + 1]) / 2, z = (zs[k] + zs[k + 1]) / 2;
+            const bool hollow = std::any_of(
+                recesses.begin(), recesses.end(),
+                [&](const Recess& r)
+                { return x > r.left && x < r.right && z > r.bottom && z < r.top; });
+            if (hollow) continue;
+            addQuad(
+                mesh, at(xs[i], 0, zs[k]), at(xs[i + 1], 0, zs[k]), at(xs[i + 1], 0, zs[k + 1]),
+                at(xs[i], 0, zs[k + 1]), reflectivity);
+        }
+    for (const Recess& r : recesses)
+    {
+        const std::array<std::array<double, 2>, 4> corners{
+            {{r.left, r.bottom}, {r.right, r.bottom}, {r.right, r.top}, {r.left, r.top}}};
+        for (std::size_t i = 0; i < 4; i++)  // its sides
+        {
+            const auto &a = corners[i], &b = corners[(i + 1) % 4];
+            addQuad(
+                mesh, at(a[0], 0, a[1]), at(b[0], 0, b[1]), at(b[0], r.depth, b[1]),
+                at(a[0], r.depth, a[1]), reflectivity);
+        }
+        addQuad(
+            mesh, at(r.left, r.depth, r.bottom), at(r.right, r.depth, r.bottom),
+            at(r.right, r.depth, r.top), at(r.left, r.depth, r.top), r.reflectivity);
+    }
+}
+
+void addExtrusion(
+    Mesh& mesh, const Pose& T, const std::vector<std::array<double, 2>>& profile, double width,
+    float reflectivity)
+{
+    Vector3d center = Vector3d::Zero();
+    for (const auto& p : profile) center += Vector3d(p[0], 0, p[1]);
+    center /= static_cast<double>(profile.size());
+    const Vector3d side(0, width / 2, 0);
+    for (std::size_t i = 0; i < profile.size(); i++)
+    {
+        const auto &p = profile[i], &q = profile[(i + 1) % profile.size()];
+        const Vector3d a(p[0], 0, p[1]), b(q[0], 0, q[1]);
+        addQuad(mesh, T * (a - side), T * (b - side), T * (b + side), T * (a + side), reflectivity);
+        for (const double s : {-1.0, 1.0})
+        {
+            const auto ia = addVertex(mesh, T * (a + s * side));
+            const auto ib = addVertex(mesh, T * (b + s * side));
+            const auto ic = addVertex(mesh, T * (center + s * side));
+            addTriangle(mesh, ia, ib, ic, reflectivity);
+        }
+    }
+}
 }  // namespace taut::simulation

@@ -15,7 +15,8 @@ constexpr double kRamp = 2.0;           // from rest to full motion [s]
 constexpr double kRunUp = 8.0;          // before time 0, where there is no rest [s]
 constexpr double kSmoothing = 0.4;      // of the progress along the route, width of one pass [s]
 constexpr double kLeanSmoothing = 0.3;  // the same of the accelerations leant into [s]
-constexpr double kAfter = 1.0;          // motion goes on after the end asked for [s]
+constexpr double kAfter = 0.5;          // motion goes on after the end asked for [s]
+constexpr double kRunOut = 1.5;         // made and thrown away: smoothing falters at the end [s]
 
 /** 0 before 0, 1 after 1, three times continuously differentiable. */
 double smoothStep(double x)
@@ -121,7 +122,8 @@ Base makeBase(
 
     Base base;
     const auto lead = static_cast<std::ptrdiff_t>(std::llround(-begin / h)) + Motion::kLead;
-    const auto count = static_cast<std::ptrdiff_t>(Motion::controlsFor(duration + kAfter, h));
+    const auto count =
+        static_cast<std::ptrdiff_t>(Motion::controlsFor(duration + kAfter + kRunOut, h));
     for (std::ptrdiff_t m = -lead; m < count - Motion::kLead; m++)
         base.times.push_back(h * static_cast<double>(m));
 
@@ -166,6 +168,7 @@ Motion shaken(
     for (std::size_t i = 0; i < base.times.size(); i++)
     {
         if (base.times[i] < -(Motion::kLead + 0.5) * spacing) continue;  // the run-up
+        if (base.times[i] > base.times.back() - kRunOut) break;
         const double a = amplitude * base.envelope[i], c = frequency * base.times[i];
         const Matrix3d R = base.rotations[i] * expSO3(Vector3d(0, 0, a * waves[2].at(c))) *
                            expSO3(Vector3d(0, a * waves[1].at(c), 0)) *
@@ -209,6 +212,7 @@ Motion makeMotion(
     {
         const MotionPeaks peaks =
             peaksOf(shaken(base, waves, amplitude, frequency, config.knot_spacing));
+        if (peaks.rate < 1e-6) break;  // the recording ends before the rest does
         const double rate = config.shake_rate / peaks.rate;
         const double acceleration = config.shake_acceleration / peaks.angular_acceleration;
         if (std::abs(rate - 1) < 0.01 && std::abs(acceleration - 1) < 0.01) break;

@@ -1,18 +1,70 @@
 #include "taut/simulation/World.h"
 
+#include <sstream>
+
 #include "Worlds.h"
 
 namespace taut::simulation
 {
+namespace
+{
+Route parseRoute(const WorldConfig& config)
+{
+    Route route;
+    route.rounding = config.rounding;
+    std::istringstream corners(config.route);
+    for (std::string text; std::getline(corners, text, ',');)
+    {
+        std::istringstream s(text);
+        Vector3d p;
+        if (!(s >> p.x() >> p.y() >> p.z()) || !(s >> std::ws).eof())
+            throw ConfigError("configuration key 'world.route': '" + text + "' is not 'x y z'");
+        route.corners.push_back(p);
+    }
+    if (route.corners.size() < 2)
+        throw ConfigError(
+            "configuration key 'world.route' needs two corners 'x y z, x y z' or more");
+    return route;
+}
+}  // namespace
+
 void declare(ConfigSection& section, WorldConfig& config)
 {
-    section.choice<WorldType>("type", config.type, {{"hall", WorldType::Hall}}, "kind of world");
+    section.choice<WorldType>(
+        "type", config.type,
+        {{"hall", WorldType::Hall},
+         {"corridor", WorldType::Corridor},
+         {"stairwell", WorldType::Stairwell},
+         {"street", WorldType::Street},
+         {"forest", WorldType::Forest},
+         {"mesh", WorldType::MeshFile}},
+        "kind of world");
     section.key("seed", config.seed, {0, 1e9}, "of what is placed at random");
+    if (config.type != WorldType::MeshFile) return;
+    section.key("file", config.file, "PLY or OBJ, metres, z up");
+    section.key("route", config.route, "corners 'x y z, x y z, ...' of a closed way [m]");
+    section.key("rounding", config.rounding, kNotNegative, "m, of the corners of the route");
+    section.key("reflectivity", config.reflectivity, {0.01, 1}, "of its surfaces");
 }
 
 World makeWorld(const WorldConfig& config)
 {
     Random random(static_cast<std::uint64_t>(config.seed), 2);
-    return makeHall(random);
+    switch (config.type)
+    {
+        case WorldType::Hall:
+            return makeHall(random);
+        case WorldType::Corridor:
+            return makeCorridor(random);
+        case WorldType::Stairwell:
+            return makeStairwell(random);
+        case WorldType::Street:
+            return makeStreet(random);
+        case WorldType::Forest:
+            return makeForest(random);
+        case WorldType::MeshFile:
+            break;
+    }
+    return {loadMesh(config.file, static_cast<float>(config.reflectivity)), parseRoute(config)};
 }
 }  // namespace taut::simulation

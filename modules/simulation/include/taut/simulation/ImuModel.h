@@ -12,7 +12,9 @@ namespace taut::simulation
 enum class ImuPreset
 {
     Ideal,       //!< no errors at all
+    Tactical,    //!< STIM300-like
     Industrial,  //!< ADIS16448-like
+    Consumer,    //!< MPU-9250-like
 };
 
 /** An IMU and its errors. */

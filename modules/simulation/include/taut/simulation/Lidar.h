@@ -17,6 +17,11 @@ namespace taut::simulation
 enum class LidarType
 {
     Vlp16,
+    Hdl32,
+    Hdl64,
+    Os1_64,
+    Os1_128,
+    Rosette,  //!< Livox-like
 };
 
 /** What a LiDAR measures, and how well. */

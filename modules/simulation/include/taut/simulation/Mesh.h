@@ -46,4 +46,30 @@ void addGround(
 
 /** A box, as seen from inside: the same surfaces, by its opposite corners. */
 void addRoom(Mesh& mesh, const Vector3d& min, const Vector3d& max, float reflectivity);
+
+/** A rectangle of a wall that lies behind the wall's plane (depth > 0) or stands out of it (< 0).
+ */
+struct Recess
+{
+    double left = 0, right = 0;  //!< along the wall [m]
+    double bottom = 0, top = 0;  //!< over its lower edge [m]
+    double depth = 0;            //!< [m]
+    float reflectivity = 0.5F;
+};
+
+/** An upright wall with recesses that do not overlap. In the frame of T the wall spans x in [0,
+ * length] and z in [0, height] in the plane y = 0; +y is behind it. */
+void addWall(
+    Mesh& mesh, const Pose& T, double length, double height, const std::vector<Recess>& recesses,
+    float reflectivity);
+
+/** A profile in the x-z plane of T, extruded by +-width/2 along its y. The profile is closed and
+ * seen whole from its centroid. */
+void addExtrusion(
+    Mesh& mesh, const Pose& T, const std::vector<std::array<double, 2>>& profile, double width,
+    float reflectivity);
+
+/** A triangle mesh from a PLY (text or binary little endian) or OBJ file. Polygons are cut into
+ * fans. Throws std::runtime_error naming the file and the cause. */
+Mesh loadMesh(const std::string& path, float reflectivity);
 }  // namespace taut::simulation

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "taut/core/Config.h"
 #include "taut/simulation/Mesh.h"
@@ -10,13 +11,22 @@ namespace taut::simulation
 {
 enum class WorldType
 {
-    Hall,  //!< 36 x 22 x 7 m with pillars, racks and crates
+    Hall,       //!< 36 x 22 x 7 m with pillars, racks and crates
+    Corridor,   //!< 60 x 2.4 m, doors a few centimetres deep: weak along its axis
+    Stairwell,  //!< five storeys of stairs
+    Street,     //!< four streets around a block: facades, cars, poles, trees
+    Forest,     //!< trunks on uneven ground
+    MeshFile,   //!< a PLY or OBJ file
 };
 
 struct WorldConfig
 {
     WorldType type = WorldType::Hall;
-    int seed = 1;  //!< of what is placed at random
+    int seed = 1;               //!< of what is placed at random
+    std::string file;           //!< for MeshFile
+    std::string route;          //!< for MeshFile: corners "x y z, x y z, ..." of the way [m]
+    double rounding = 1;        //!< for MeshFile: of the corners of the route [m]
+    double reflectivity = 0.5;  //!< for MeshFile
 };
 
 void declare(ConfigSection& section, WorldConfig& config);
@@ -28,5 +38,6 @@ struct World
     Route route;
 };
 
+/** Throws std::runtime_error if a file cannot be used. */
 World makeWorld(const WorldConfig& config);
 }  // namespace taut::simulation
