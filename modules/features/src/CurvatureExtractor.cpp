@@ -1,6 +1,7 @@
 #include "taut/features/CurvatureExtractor.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "RingShape.h"
 #include "Rings.h"
@@ -32,7 +33,7 @@ class RingChooser
         for (std::size_t s = 0; s < sectors; s++)
         {
             int count = 0;
-            for (const std::size_t i :
+            for (const auto& [rank, i] :
                  rankedPoints(s * size / sectors, (s + 1) * size / sectors, shape))
             {
                 if (count == most) break;
@@ -45,16 +46,16 @@ class RingChooser
     }
 
  private:
-    std::vector<std::size_t> rankedPoints(std::size_t begin, std::size_t end, Shape shape) const
+    /** Points of that shape with their rank, the first to choose first. */
+    std::vector<std::pair<float, std::size_t>> rankedPoints(
+        std::size_t begin, std::size_t end, Shape shape) const
     {
         const float sign = shape == Shape::Edge ? -1.0f : 1.0f;
-        std::vector<std::size_t> ranked;
+        std::vector<std::pair<float, std::size_t>> ranked;
+        ranked.reserve(end - begin);
         for (std::size_t i = begin; i < end; i++)
-            if (ring_.shape[i] == shape) ranked.push_back(i);
-        std::stable_sort(
-            ranked.begin(), ranked.end(),
-            [&](std::size_t a, std::size_t b)
-            { return sign * ring_.curvature[a] < sign * ring_.curvature[b]; });
+            if (ring_.shape[i] == shape) ranked.emplace_back(sign * ring_.curvature[i], i);
+        std::sort(ranked.begin(), ranked.end());
         return ranked;
     }
 

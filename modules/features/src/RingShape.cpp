@@ -29,6 +29,9 @@ class Ring
           tan_incidence_(std::tan(config.max_incidence * M_PI / 180))
     {
         sums_.reserve(size() + 1);
+        ranges_.reserve(size());
+        angles_.reserve(size());
+        breaks_.reserve(size());
         sums_.emplace_back(Vector3d::Zero());
         for (std::size_t i = 0; i < size(); i++)
         {
@@ -36,6 +39,8 @@ class Ring
             sums_.emplace_back(sums_.back() + position);
             ranges_.push_back(position.norm());
         }
+        for (std::size_t i = 0; i + 1 < size(); i++)
+            angles_.push_back(angleBetween(point(i), point(i + 1)));
         breaks_.push_back(0);
         for (std::size_t i = 0; i + 1 < size(); i++)
             breaks_.push_back(breaks_.back() + (isGap(i) || isOcclusion(i) ? 1 : 0));
@@ -78,7 +83,6 @@ class Ring
  private:
     const LidarPoint& point(std::size_t i) const { return scan_.points[points_[i]]; }
     double change(std::size_t pair) const { return std::abs(ranges_[pair + 1] - ranges_[pair]); }
-    double angle(std::size_t pair) const { return angleBetween(point(pair), point(pair + 1)); }
 
     /** Mean of the points [from, to). */
     Vector3d mean(std::size_t from, std::size_t to) const
@@ -101,7 +105,7 @@ class Ring
     /** Are returns missing, so many that nothing is known of the surface? */
     bool isGap(std::size_t pair) const
     {
-        return angle(pair) > (config_.neighbours + 0.5) * angular_step_;
+        return angles_[pair] > (config_.neighbours + 0.5) * angular_step_;
     }
 
     /** A step in range that neither a surface at the largest incidence makes nor the slope beside.
@@ -113,7 +117,7 @@ class Ring
         const double nearer = std::min(ranges_[pair], ranges_[pair + 1]);
         return change(pair) > config_.occlusion_step + std::min(
                                                            kSteadySlope * std::max(before, after),
-                                                           tan_incidence_ * nearer * angle(pair));
+                                                           tan_incidence_ * nearer * angles_[pair]);
     }
 
     /** Are all points that a neighbourhood of 2 half + 1 points a neighbour needs on one surface?
@@ -167,6 +171,7 @@ class Ring
     const CurvatureExtractor::Config& config_;
     double angular_step_, tan_incidence_;
     std::vector<double> ranges_;
+    std::vector<double> angles_;  // between the beams of each pair
     std::vector<Vector3d> sums_;  // of the points before each
     std::vector<int> breaks_;     // number of broken pairs before each point
 };
