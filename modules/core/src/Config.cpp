@@ -59,8 +59,7 @@ void ConfigSection::record(
     entries_.push_back(std::move(e));
 }
 
-void ConfigSection::key(
-    const std::string& name, double& value, Range range, const std::string& doc)
+void ConfigSection::key(const std::string& name, double& value, Range range, const std::string& doc)
 {
     if (has(name))
     {
@@ -172,7 +171,8 @@ std::string ConfigSection::effective() const
 void ConfigSection::throwUnknownChoice(
     const std::string& name, const std::string& text, const std::vector<std::string>& known) const
 {
-    std::string message = "configuration key '" + pathOf(name) + "' is '" + text + "'; choose from:";
+    std::string message =
+        "configuration key '" + pathOf(name) + "' is '" + text + "'; choose from:";
     for (const auto& k : known) message += " " + k;
     throw ConfigError(message);
 }

@@ -40,7 +40,7 @@ Matrix3d expSO3(const Vector3d& phi)
 Vector3d logSO3(const Matrix3d& R)
 {
     const Vector3d vee(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));  // 2 sin axis
-    const double cosine2 = R.trace() - 1;                                          // 2 cos
+    const double cosine2 = R.trace() - 1;                                         // 2 cos
     const double sine2 = vee.norm();
     if (cosine2 < -1.9)  // near pi the sine says nothing of the axis: take the quaternion
     {

@@ -30,8 +30,8 @@ MotionDelta stepBackward(
     const Matrix3d turned_later = L.gamma * hat(a_later);
     const Matrix3d turned_earlier = E.gamma * hat(a_earlier);
     E.dbeta_dba = L.dbeta_dba + 0.5 * dt * (L.gamma + E.gamma);
-    E.dbeta_dbg = L.dbeta_dbg + 0.5 * dt *
-                                    (turned_later * L.dtheta_dbg + turned_earlier * E.dtheta_dbg);
+    E.dbeta_dbg =
+        L.dbeta_dbg + 0.5 * dt * (turned_later * L.dtheta_dbg + turned_earlier * E.dtheta_dbg);
     E.dalpha_dba = L.dalpha_dba - 0.5 * dt * (L.dbeta_dba + E.dbeta_dba);
     E.dalpha_dbg = L.dalpha_dbg - 0.5 * dt * (L.dbeta_dbg + E.dbeta_dbg);
     return E;

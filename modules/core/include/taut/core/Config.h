@@ -34,7 +34,7 @@ inline constexpr Range kPositive{1e-300, 1e300};
  * After all keys are declared, rejectUnknown() throws on a key that nobody asked for. */
 class ConfigSection
 {
-   public:
+ public:
     /** `node` is a map or null (all defaults); `path` names the section in messages. */
     explicit ConfigSection(mrpt::containers::yaml node = {}, std::string path = "");
 
@@ -66,7 +66,8 @@ class ConfigSection
     /** A nested section; created empty where it is not given. The reference stays valid. */
     ConfigSection& section(const std::string& name);
 
-    /** Throws ConfigError naming the first key, here or below, that was given but never declared. */
+    /** Throws ConfigError naming the first key, here or below, that was given but never declared.
+     */
     void rejectUnknown() const;
 
     /** YAML text of everything declared: values as they took effect, docs as comments. */
@@ -74,7 +75,7 @@ class ConfigSection
 
     const std::string& path() const { return path_; }
 
-   private:
+ private:
     struct Entry
     {
         std::string name, value, doc;

@@ -13,7 +13,7 @@ namespace taut
 class FeatureExtractor : public mrpt::rtti::CObject
 {
     DEFINE_VIRTUAL_MRPT_OBJECT(FeatureExtractor)
-   public:
+ public:
     virtual void configure(ConfigSection& section) = 0;
 
     /** Features of a scan in the IMU frame (after transformScan), sorted by time. Deterministic. A

@@ -7,6 +7,9 @@
 
 namespace taut
 {
+/** Specific force, in the world frame, of an accelerometer at rest [m/s^2]: upwards. */
+inline const Vector3d kGravityWorld{0, 0, 9.81};
+
 /** One reading of the IMU, in the body frame b (the IMU's own). */
 struct ImuSample
 {
@@ -20,9 +23,9 @@ using ImuSamples = std::vector<ImuSample>;  //!< strictly increasing in time
 /** Continuous-time noise of an IMU (paper, equation 2). */
 struct ImuNoise
 {
-    double gyro = 2e-3;               //!< white noise density [rad/s/sqrt(Hz)]
-    double accel = 2e-2;              //!< white noise density [m/s^2/sqrt(Hz)]
-    double gyro_bias_walk = 1e-4;     //!< [rad/s^2/sqrt(Hz)]
-    double accel_bias_walk = 1e-3;    //!< [m/s^3/sqrt(Hz)]
+    double gyro = 2e-3;             //!< white noise density [rad/s/sqrt(Hz)]
+    double accel = 2e-2;            //!< white noise density [m/s^2/sqrt(Hz)]
+    double gyro_bias_walk = 1e-4;   //!< [rad/s^2/sqrt(Hz)]
+    double accel_bias_walk = 1e-3;  //!< [m/s^3/sqrt(Hz)]
 };
 }  // namespace taut

@@ -23,7 +23,7 @@ struct MapPoint
 class Map : public mrpt::rtti::CObject
 {
     DEFINE_VIRTUAL_MRPT_OBJECT(Map)
-   public:
+ public:
     virtual void configure(ConfigSection& section) = 0;
 
     /** One correspondence a query, Surface::None where nothing reliable is near. The result depends

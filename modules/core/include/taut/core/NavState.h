@@ -12,7 +12,8 @@ namespace taut
 struct NavState
 {
     static constexpr int kSize = 15;
-    static constexpr int kPosition = 0, kVelocity = 3, kRotation = 6, kBiasAccel = 9, kBiasGyro = 12;
+    static constexpr int kPosition = 0, kVelocity = 3, kRotation = 6, kBiasAccel = 9,
+                         kBiasGyro = 12;
     using Vector = Eigen::Matrix<double, kSize, 1>;
     using Matrix = Eigen::Matrix<double, kSize, kSize>;
 

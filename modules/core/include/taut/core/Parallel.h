@@ -6,12 +6,12 @@
 
 namespace taut
 {
-/** A small pool of threads for loops over arrays. Work is cut in chunks whose bounds depend on the size
- * alone, never on the number of threads: sums that are kept by chunk and added in the order of the
- * chunks are therefore bit-equal with any number of threads. */
+/** A small pool of threads for loops over arrays. Work is cut in chunks whose bounds depend on the
+ * size alone, never on the number of threads: sums that are kept by chunk and added in the order of
+ * the chunks are therefore bit-equal with any number of threads. */
 class Executor
 {
-   public:
+ public:
     explicit Executor(int threads = 1);
     ~Executor();
     Executor(const Executor&) = delete;
@@ -30,7 +30,7 @@ class Executor
         std::size_t size, std::size_t chunk_size,
         const std::function<void(std::size_t chunk, std::size_t begin, std::size_t end)>& body);
 
-   private:
+ private:
     struct Pool;
     int threads_;
     std::unique_ptr<Pool> pool_;

@@ -10,8 +10,9 @@
 
 namespace taut
 {
-/** Creates the class of that name, registered with MRPT's class factory, as the plug point `Interface`.
- * Throws ConfigError if no such class is registered or if it is not one of that plug point. */
+/** Creates the class of that name, registered with MRPT's class factory, as the plug point
+ * `Interface`. Throws ConfigError if no such class is registered or if it is not one of that plug
+ * point. */
 template <class Interface>
 std::shared_ptr<Interface> createPlugin(const std::string& class_name)
 {

@@ -8,9 +8,9 @@
 
 namespace taut
 {
-/** Backward preintegrated motion at one time t <= t_k (paper, equation 7), with its derivatives by the
- * biases. All in the body frame at t_k; `gamma` = R_{b_t}^{b_k}. The integrals are signed: they run
- * backward, so beta of a body at rest is -g d and alpha +1/2 g d^2. */
+/** Backward preintegrated motion at one time t <= t_k (paper, equation 7), with its derivatives by
+ * the biases. All in the body frame at t_k; `gamma` = R_{b_t}^{b_k}. The integrals are signed: they
+ * run backward, so beta of a body at rest is -g d and alpha +1/2 g d^2. */
 struct MotionDelta
 {
     Matrix3d gamma = Matrix3d::Identity();
@@ -29,11 +29,11 @@ struct ImuKnot
     MotionDelta delta;
 };
 
-/** The motion between two scan ends as the IMU tells it, integrated from t_k backward to t_{k-1}. The
- * whole chain is kept, so that the motion at any point's time costs one partial step. */
+/** The motion between two scan ends as the IMU tells it, integrated from t_k backward to t_{k-1}.
+ * The whole chain is kept, so that the motion at any point's time costs one partial step. */
 class PreintegratedImu
 {
-   public:
+ public:
     std::vector<ImuKnot> knots;  //!< knots.front() at t_k, then backward in time to t_{k-1}
     Vector3d bias_accel = Vector3d::Zero();  //!< biases that the chain was integrated with
     Vector3d bias_gyro = Vector3d::Zero();
@@ -44,8 +44,8 @@ class PreintegratedImu
     /** Covariance of the change of (ba, bg) over the interval. */
     Eigen::Matrix<double, 6, 6> bias_walk_covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
-    Time end() const { return knots.front().sample.t; }    //!< t_k
-    Time begin() const { return knots.back().sample.t; }   //!< t_{k-1}
+    Time end() const { return knots.front().sample.t; }             //!< t_k
+    Time begin() const { return knots.back().sample.t; }            //!< t_{k-1}
     double duration() const { return toSeconds(end() - begin()); }  //!< [s]
 
     /** The motion at time t, by one partial mid-point step from the next later knot. `hint` is the
@@ -55,8 +55,8 @@ class PreintegratedImu
     MotionDelta at(Time t) const;
 };
 
-/** One backward mid-point step (paper, equation 8): the motion at `earlier` from the one at `later`,
- * with its derivatives by the biases. */
+/** One backward mid-point step (paper, equation 8): the motion at `earlier` from the one at
+ * `later`, with its derivatives by the biases. */
 MotionDelta stepBackward(
     const MotionDelta& at_later, const ImuSample& later, const ImuSample& earlier,
     const Vector3d& bias_accel, const Vector3d& bias_gyro);

@@ -12,9 +12,9 @@ namespace taut
 /** What a preintegration starts from. */
 struct PreintegrationRequest
 {
-    Time begin = 0, end = 0;      //!< t_{k-1}, t_k; begin < end
-    const ImuSamples* samples = nullptr;  //!< should reach over both ends; may be empty
-    NavState previous;            //!< x_{k-1}: its biases are used
+    Time begin = 0, end = 0;                    //!< t_{k-1}, t_k; begin < end
+    const ImuSamples* samples = nullptr;        //!< should reach over both ends; may be empty
+    NavState previous;                          //!< x_{k-1}: its biases are used
     Vector3d previous_rate = Vector3d::Zero();  //!< mean body rate over the interval before [rad/s]
     ImuNoise noise;
 };
@@ -23,7 +23,7 @@ struct PreintegrationRequest
 class Preintegrator : public mrpt::rtti::CObject
 {
     DEFINE_VIRTUAL_MRPT_OBJECT(Preintegrator)
-   public:
+ public:
     virtual void configure(ConfigSection& section) = 0;
 
     /** True if the motion comes from IMU samples: the pipeline then waits for them. */

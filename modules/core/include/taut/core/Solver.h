@@ -16,12 +16,12 @@ using ProblemMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3
  * kept inside. Perturbations are local, x <- x (+) delta. */
 class LeastSquaresProblem
 {
-   public:
+ public:
     virtual ~LeastSquaresProblem() = default;
     virtual int dimension() const = 0;
 
-    /** Gauss-Newton Hessian H = J^T W J, gradient g = J^T W r, both in the local perturbation at the
-     * current estimate; returns the cost there. */
+    /** Gauss-Newton Hessian H = J^T W J, gradient g = J^T W r, both in the local perturbation at
+     * the current estimate; returns the cost there. */
     virtual double linearize(ProblemMatrix& hessian, ProblemVector& gradient) = 0;
 
     /** Cost at the current estimate. */
@@ -44,17 +44,18 @@ class LeastSquaresProblem
 
 struct SolveReport
 {
-    int evaluations = 0;      //!< linearisations
+    int evaluations = 0;  //!< linearisations
     double initial_cost = 0, final_cost = 0;
-    double last_step = 0;     //!< norm of the last step whitened by the Hessian: in sigmas
+    double last_step = 0;  //!< norm of the last step whitened by the Hessian: in sigmas
     bool converged = false;
 };
 
-/** Plug point: minimises a problem from its current estimate, leaving the estimate at the optimum. */
+/** Plug point: minimises a problem from its current estimate, leaving the estimate at the optimum.
+ */
 class Solver : public mrpt::rtti::CObject
 {
     DEFINE_VIRTUAL_MRPT_OBJECT(Solver)
-   public:
+ public:
     virtual void configure(ConfigSection& section) = 0;
     virtual SolveReport solve(LeastSquaresProblem& problem) const = 0;
 };

@@ -11,6 +11,12 @@ namespace taut
 using Time = std::int64_t;      //!< nanoseconds since the UNIX epoch
 using Duration = std::int64_t;  //!< nanoseconds
 
-constexpr double toSeconds(Duration d) { return static_cast<double>(d) * 1e-9; }
-inline Duration fromSeconds(double s) { return static_cast<Duration>(std::llround(s * 1e9)); }
+constexpr double toSeconds(Duration d)
+{
+    return static_cast<double>(d) * 1e-9;
+}
+inline Duration fromSeconds(double s)
+{
+    return static_cast<Duration>(std::llround(s * 1e9));
+}
 }  // namespace taut

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/core/Correspondence.h"
+#include "taut/core/Features.h"
+#include "taut/core/Parallel.h"
+#include "taut/core/Solver.h"
+#include "taut/factors/RobustKernel.h"
+#include "taut/factors/SweepPath.h"
+
+namespace taut
+{
+struct LidarNoiseConfig
+{
+    /** Noise of a residual besides what the map says of the surface. The balance scales both. */
+    double sigma = 0;  //!< [m]
+    RobustKernel kernel;
+};
+
+/** How well the LiDAR residuals fit their noise. */
+struct LidarFit
+{
+    int count = 0;       //!< correspondences used
+    double chi2 = 0;     //!< sum of weight * |r|^2 / sigma^2
+    double weights = 0;  //!< sum of the robust weights (rows counted)
+    double reducedChi2() const { return weights > 0 ? chi2 / weights : 1; }
+};
+
+/** All point-to-line and point-to-plane residuals of one scan with point-level undistortion (paper,
+ * equations 13 and 14): point j is undistorted anew by the path each time it is evaluated. */
+class LidarFactor
+{
+ public:
+    /** Features sorted by time; both references are kept. */
+    LidarFactor(const Features& features, const LidarNoiseConfig& noise, Executor& executor);
+
+    /** One a feature. */
+    void setCorrespondences(const std::vector<Correspondence>& correspondences);
+
+    /** Undistorted world positions of all features, in their order. */
+    std::vector<Vector3d> undistort(const SweepPath& path) const;
+
+    /** Adds to the 30 x 30 Hessian and gradient of (x_{k-1}, x_k); returns the cost,
+     * 1/2 sum rho(|r|^2 / (balance sigma)^2). The path's derivative is exact at nodes every few
+     * milliseconds and interpolated between them; the residuals are exact. */
+    double linearize(
+        const SweepPath& path, double balance, ProblemMatrix& hessian,
+        ProblemVector& gradient) const;
+
+    double cost(const SweepPath& path, double balance) const;
+    LidarFit fit(const SweepPath& path, double balance) const;
+
+ private:
+    struct Partial;
+    void linearizeChunk(
+        const SweepPath& path, double balance, std::size_t begin, std::size_t end,
+        Partial& out) const;
+    Time timeOf(std::size_t i) const { return features_.stamp + features_.points[i].offset; }
+
+    template <class Body>
+    void forResiduals(const SweepPath& path, double balance, const Body& body) const;
+
+    const Features& features_;
+    const LidarNoiseConfig& noise_;
+    Executor& executor_;
+    std::vector<Correspondence> correspondences_;
+};
+}  // namespace taut

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <tsl/robin_map.h>
+#include <tsl/robin_set.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "taut/core/Map.h"
+#include "taut/map/StatisticsTree.h"
+
+namespace taut
+{
+struct OctreeMapConfig
+{
+    double leaf_size = 0.25;  //!< [m] edge of the smallest node; the smallest window is twice that
+    int scales = 4;           //!< number of window sizes, each twice the one before
+    int min_points = 8;       //!< fewest points of a window that is believed
+    double scale_tolerance =
+        1.3;  //!< a larger window may be thicker than the thinnest by this factor
+    double max_thickness = 0.15;  //!< [m] thicker windows are no planes
+    double max_flatness = 0.2;    //!< largest ratio of thickness to the smaller extent in the plane
+    double min_width = 0.1;       //!< [m] deviation across a window that a normal needs
+    double gate = 0.8;            //!< [m] largest distance from a surface to be matched with it
+    double min_sigma = 0.005;     //!< [m] no surface is believed to be thinner
+    double leaf_capacity = 1000;  //!< points after which a leaf is full and stays as it is
+    bool lines = false;           //!< match thin, long windows as lines
+    double window_radius = 100;   //!< [m] half edge of the cube around the body that is kept
+};
+
+/** Local map in an octree whose nodes hold the statistics of their points at every scale. A query
+ * is matched with the plane (or line) of the largest window around it that is as flat as the
+ * smallest one: the scale at which the world is planar there. A window is the cube of 2 x 2 x 2
+ * nodes around the node corner nearest to the query, so that no query lies near a window's edge,
+ * where a surface would be seen cut in two. */
+class OctreeMap : public Map
+{
+    DEFINE_MRPT_OBJECT(OctreeMap, taut)
+ public:
+    OctreeMap();
+    void configure(ConfigSection& section) override;
+    void match(
+        const std::vector<MapPoint>& queries, std::vector<Correspondence>& correspondences,
+        Executor& executor) const override;
+    void insert(const std::vector<MapPoint>& points) override;
+    void slide(const Vector3d& center_world) override;
+    bool empty() const override { return !tree_ || tree_->size() == 0; }
+    std::size_t size() const override { return tree_ ? tree_->size() : 0; }
+    void clear() override;
+
+    OctreeMapConfig config;
+
+ private:
+    /** What the points of a window look like. */
+    struct Window
+    {
+        std::uint32_t checked = 0;  //!< insertion after which it was last compared with the tree
+        double count = 0;           //!< points when it was computed; 0: not known yet
+        Vector3d mean = Vector3d::Zero(), normal = Vector3d::UnitZ(), axis = Vector3d::UnitX();
+        double thickness2 = 0;           //!< unbiased variance along the normal [m^2]
+        double width2 = 0, length2 = 0;  //!< variances along the other two axes [m^2]
+        std::array<std::uint16_t, 3> corner{};
+    };
+    /** Mixes all bits of a packed key into the low ones, which alone choose the bucket. */
+    struct KeyHash
+    {
+        std::size_t operator()(std::uint64_t key) const
+        {
+            key *= 0x9e3779b97f4a7c15ULL;
+            return key ^ (key >> 32);
+        }
+    };
+    using WindowIndex = tsl::robin_map<std::uint64_t, std::uint32_t, KeyHash>;
+    struct Level
+    {
+        WindowIndex index;
+        std::vector<Window> windows;
+        std::vector<std::uint32_t> free;
+    };
+
+    bool cornerOf(const Vector3d& p, int level, std::array<std::uint16_t, 3>& corner) const;
+    std::uint32_t windowAt(Level& level, const std::array<std::uint16_t, 3>& corner) const;
+    void refresh(Window& window, int level) const;
+    void compute(Window& window, const PointStatistics& statistics) const;
+    Correspondence choose(
+        const Vector3d& query, FeatureKind kind, const Window* const* windows) const;
+    bool isPlane(const Window& window) const;
+    bool isLine(const Window& window) const;
+    unsigned depthOf(int level) const;
+    unsigned blockDepth() const;
+
+    std::unique_ptr<StatisticsTree> tree_;
+    mutable std::vector<Level> levels_;  // a cache: its content follows from the tree
+    std::uint32_t insertions_ = 0;
+    tsl::robin_set<std::uint64_t, KeyHash> blocks_;  // coarse nodes that exist, for slide()
+    Vector3d last_center_ = Vector3d::Constant(1e300);
+};
+}  // namespace taut

@@ -1,0 +1,334 @@
+#include "taut/map/OctreeMap.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+IMPLEMENTS_MRPT_OBJECT(OctreeMap, taut::Map, taut)
+
+namespace taut
+{
+namespace
+{
+constexpr unsigned kTreeDepth = 16;
+constexpr double kBlockSize = 8.0;  // [m] about: unit of forgetting
+
+std::uint64_t pack(std::uint16_t x, std::uint16_t y, std::uint16_t z)
+{
+    return std::uint64_t{x} | std::uint64_t{y} << 16 | std::uint64_t{z} << 32;
+}
+
+octomap::OcTreeKey unpack(std::uint64_t k)
+{
+    return {
+        static_cast<std::uint16_t>(k), static_cast<std::uint16_t>(k >> 16),
+        static_cast<std::uint16_t>(k >> 32)};
+}
+
+octomap::point3d toOctomap(const Vector3d& p)
+{
+    return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+}
+}  // namespace
+
+OctreeMap::OctreeMap()
+{
+    clear();
+}
+
+void OctreeMap::configure(ConfigSection& s)
+{
+    s.key("leaf_size", config.leaf_size, {0.01, 10}, "m, edge of the smallest node");
+    s.key("scales", config.scales, {1, 8}, "number of window sizes, doubling from 2 leaf_size");
+    s.key("min_points", config.min_points, {4, 1e6}, "fewest points of a window that is believed");
+    s.key(
+        "scale_tolerance", config.scale_tolerance, {1, 100},
+        "factor by which a larger window may be thicker than the thinnest one");
+    s.key("max_thickness", config.max_thickness, kPositive, "m, thicker windows are no planes");
+    s.key("max_flatness", config.max_flatness, {0, 1}, "ratio of thickness to the extent");
+    s.key("min_width", config.min_width, kPositive, "m, narrower windows have no known normal");
+    s.key("gate", config.gate, kPositive, "m, largest distance to the surface");
+    s.key("min_sigma", config.min_sigma, kPositive, "m, no surface is believed to be thinner");
+    s.key("leaf_capacity", config.leaf_capacity, kPositive, "points after which a leaf is full");
+    s.key("lines", config.lines, "match thin, long windows as lines");
+    s.key(
+        "window_radius", config.window_radius, kPositive, "m, half edge of the cube that is kept");
+    clear();
+}
+
+void OctreeMap::clear()
+{
+    tree_ = std::make_unique<StatisticsTree>(config.leaf_size);
+    levels_.assign(static_cast<std::size_t>(config.scales), {});
+    blocks_.clear();
+    insertions_ = 0;
+    last_center_.setConstant(1e300);
+}
+
+unsigned OctreeMap::depthOf(int level) const
+{
+    return kTreeDepth - static_cast<unsigned>(level);
+}
+
+unsigned OctreeMap::blockDepth() const
+{
+    const int up = static_cast<int>(std::lround(std::log2(kBlockSize / config.leaf_size)));
+    return kTreeDepth - static_cast<unsigned>(std::clamp(up, config.scales - 1, 15));
+}
+
+void OctreeMap::insert(const std::vector<MapPoint>& points)
+{
+    // Points of one leaf are summed first: one descent of the tree for each leaf touched.
+    WindowIndex index;
+    index.reserve(points.size());
+    std::vector<std::pair<std::uint64_t, PointStatistics>> leaves;
+    for (const MapPoint& p : points)
+    {
+        octomap::OcTreeKey key;
+        if (!p.position.allFinite() || !tree_->coordToKeyChecked(toOctomap(p.position), key))
+            continue;
+        const std::uint64_t packed = pack(key[0], key[1], key[2]);
+        const auto [it, added] =
+            index.try_emplace(packed, static_cast<std::uint32_t>(leaves.size()));
+        if (added) leaves.push_back({packed, {}});
+        leaves[it->second].second.add(p.position);
+    }
+    const unsigned from_depth = depthOf(config.scales - 1);
+    const unsigned block_shift = kTreeDepth - blockDepth();
+    for (const auto& [packed, statistics] : leaves)
+    {
+        const octomap::OcTreeKey key = unpack(packed);
+        const StatisticsNode* leaf = tree_->find(key, kTreeDepth);
+        if (leaf != nullptr && leaf->statistics().count >= config.leaf_capacity) continue;
+        tree_->add(key, statistics, from_depth);
+        blocks_.insert(pack(
+            static_cast<std::uint16_t>(key[0] >> block_shift << block_shift),
+            static_cast<std::uint16_t>(key[1] >> block_shift << block_shift),
+            static_cast<std::uint16_t>(key[2] >> block_shift << block_shift)));
+    }
+    insertions_++;
+}
+
+void OctreeMap::slide(const Vector3d& center_world)
+{
+    if ((center_world - last_center_).norm() < kBlockSize) return;
+    last_center_ = center_world;
+    const double reach = config.window_radius + kBlockSize;
+    const auto outside = [&](const octomap::OcTreeKey& key, unsigned depth)
+    {
+        const octomap::point3d c = tree_->keyToCoord(key, depth);
+        const Vector3d d = Vector3d(c.x(), c.y(), c.z()) - center_world;
+        return d.cwiseAbs().maxCoeff() > reach;
+    };
+    for (auto it = blocks_.begin(); it != blocks_.end();)
+    {
+        const octomap::OcTreeKey key = unpack(*it);
+        if (outside(key, blockDepth()))
+        {
+            tree_->deleteNode(key, blockDepth());
+            it = blocks_.erase(it);
+        }
+        else
+        {
+            ++it;
+        }
+    }
+    for (Level& level : levels_)
+        for (auto it = level.index.begin(); it != level.index.end();)
+        {
+            if (outside(unpack(it->first), kTreeDepth))
+            {
+                level.free.push_back(it->second);
+                it = level.index.erase(it);
+            }
+            else
+            {
+                ++it;
+            }
+        }
+}
+
+bool OctreeMap::cornerOf(const Vector3d& p, int level, std::array<std::uint16_t, 3>& corner) const
+{
+    // The key of the node just above the node corner that is nearest to p.
+    const double edge = config.leaf_size * (1 << level);
+    for (int i = 0; i < 3; i++)
+    {
+        const double nearest = std::floor(p[i] / edge + 0.5) * (1 << level) + 32768.0;
+        if (!(nearest >= 256 && nearest < 65280)) return false;
+        corner[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(nearest);
+    }
+    return true;
+}
+
+std::uint32_t OctreeMap::windowAt(Level& level, const std::array<std::uint16_t, 3>& corner) const
+{
+    const auto [it, added] = level.index.try_emplace(pack(corner[0], corner[1], corner[2]), 0u);
+    if (added)
+    {
+        if (level.free.empty())
+        {
+            it.value() = static_cast<std::uint32_t>(level.windows.size());
+            level.windows.emplace_back();
+        }
+        else
+        {
+            it.value() = level.free.back();
+            level.free.pop_back();
+            level.windows[it.value()] = {};
+        }
+        level.windows[it.value()].corner = corner;
+    }
+    return it->second;
+}
+
+void OctreeMap::refresh(Window& window, int level) const
+{
+    window.checked = insertions_;
+    const unsigned depth = depthOf(level);
+    const auto step = static_cast<std::uint16_t>(1u << level);
+    PointStatistics sum;
+    for (int i = 0; i < 8; i++)
+    {
+        const octomap::OcTreeKey key(
+            static_cast<std::uint16_t>(window.corner[0] - (i & 1 ? step : 0)),
+            static_cast<std::uint16_t>(window.corner[1] - (i & 2 ? step : 0)),
+            static_cast<std::uint16_t>(window.corner[2] - (i & 4 ? step : 0)));
+        if (const StatisticsNode* node = tree_->find(key, depth)) sum.add(node->statistics());
+    }
+    // Few new points change a surface little: it is kept until a tenth more have come.
+    if (sum.count < config.min_points || sum.count < 1.1 * window.count) return;
+    compute(window, sum);
+}
+
+void OctreeMap::compute(Window& window, const PointStatistics& statistics) const
+{
+    window.count = statistics.count;
+    window.mean = statistics.mean();
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+    eigen.computeDirect(Eigen::Matrix3d(statistics.scatter() / statistics.count));
+    window.normal = eigen.eigenvectors().col(0);
+    window.axis = eigen.eigenvectors().col(2);
+    // Three degrees of freedom went into the plane.
+    window.thickness2 =
+        std::max(0.0, eigen.eigenvalues()[0]) * statistics.count / (statistics.count - 3);
+    window.width2 = std::max(0.0, eigen.eigenvalues()[1]);
+    window.length2 = std::max(0.0, eigen.eigenvalues()[2]);
+}
+
+bool OctreeMap::isPlane(const Window& w) const
+{
+    return w.count >= config.min_points &&
+           w.thickness2 < config.max_thickness * config.max_thickness &&
+           w.thickness2 < config.max_flatness * config.max_flatness * w.width2 &&
+           w.width2 > config.min_width * config.min_width;
+}
+
+bool OctreeMap::isLine(const Window& w) const
+{
+    return config.lines && w.count >= config.min_points &&
+           w.width2 < config.max_thickness * config.max_thickness &&
+           w.width2 < config.max_flatness * config.max_flatness * w.length2;
+}
+
+Correspondence OctreeMap::choose(
+    const Vector3d& query, FeatureKind kind, const Window* const* windows) const
+{
+    Correspondence c;
+    const Window* best = nullptr;
+    double thinnest = 1e300;
+    if (kind != FeatureKind::Edge)
+        for (int level = 0; level < config.scales; level++)
+        {
+            const Window* w = windows[level];
+            if (w == nullptr || !isPlane(*w)) continue;
+            const double floor2 = std::max(w->thickness2, config.min_sigma * config.min_sigma);
+            thinnest = std::min(thinnest, floor2);
+            if (floor2 <= thinnest * config.scale_tolerance * config.scale_tolerance) best = w;
+        }
+    if (best != nullptr)
+    {
+        const Vector3d d = query - best->mean;
+        const double distance = best->normal.dot(d);
+        if (std::abs(distance) > config.gate) return c;
+        c.surface = Surface::Plane;
+        c.direction = best->normal;
+        c.point = best->mean;
+        // Noise of a new point on the surface, and of the fitted plane at the query.
+        const double s2 = std::max(best->thickness2, config.min_sigma * config.min_sigma);
+        const double along = best->axis.dot(d);
+        const double across2 = std::max(0.0, d.squaredNorm() - distance * distance - along * along);
+        const double leverage =
+            (1 + along * along / best->length2 + across2 / best->width2) / best->count;
+        c.sigma = std::sqrt(s2 * (1 + leverage));
+        return c;
+    }
+    if (kind == FeatureKind::Plane) return c;
+    for (int level = 0; level < config.scales; level++)
+    {
+        const Window* w = windows[level];
+        if (w == nullptr || !isLine(*w)) continue;
+        const Vector3d d = query - w->mean;
+        const double along = w->axis.dot(d);
+        if (d.squaredNorm() - along * along > config.gate * config.gate) continue;
+        c.surface = Surface::Line;
+        c.direction = w->axis;
+        c.point = w->mean;
+        c.sigma = std::sqrt(std::max(w->width2, config.min_sigma * config.min_sigma));
+        break;
+    }
+    return c;
+}
+
+void OctreeMap::match(
+    const std::vector<MapPoint>& queries, std::vector<Correspondence>& correspondences,
+    Executor& executor) const
+{
+    const auto n = queries.size();
+    const auto scales = static_cast<std::size_t>(config.scales);
+    constexpr std::uint32_t kNone = 0xffffffff;
+    correspondences.assign(n, {});
+    std::vector<std::uint32_t> found(n * scales, kNone);
+    for (std::size_t l = 0; l < scales; l++)
+    {
+        Level& level = levels_[l];
+        std::vector<std::uint32_t> stale;
+        for (std::size_t i = 0; i < n; i++)
+        {
+            std::array<std::uint16_t, 3> corner;
+            if (!queries[i].position.allFinite() ||
+                !cornerOf(queries[i].position, static_cast<int>(l), corner))
+                continue;
+            const std::uint32_t w = windowAt(level, corner);
+            found[i * scales + l] = w;
+            if (level.windows[w].checked != insertions_)
+            {
+                level.windows[w].checked = insertions_;
+                stale.push_back(w);
+            }
+        }
+        executor.forChunks(
+            stale.size(), 64,
+            [&](std::size_t, std::size_t begin, std::size_t end)
+            {
+                for (std::size_t i = begin; i < end; i++)
+                    refresh(level.windows[stale[i]], static_cast<int>(l));
+            });
+    }
+    executor.forChunks(
+        n, 256,
+        [&](std::size_t, std::size_t begin, std::size_t end)
+        {
+            std::array<const Window*, 8> windows{};
+            for (std::size_t i = begin; i < end; i++)
+            {
+                for (std::size_t l = 0; l < scales; l++)
+                {
+                    const std::uint32_t w = found[i * scales + l];
+                    windows[l] = w == kNone ? nullptr : &levels_[l].windows[w];
+                }
+                correspondences[i] = choose(queries[i].position, queries[i].kind, windows.data());
+            }
+        });
+}
+}  // namespace taut

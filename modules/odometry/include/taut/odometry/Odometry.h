@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "taut/core/Warning.h"
+#include "taut/odometry/OdometryConfig.h"
+#include "taut/odometry/ScanProblem.h"
+
+namespace taut
+{
+/** Times of the stages of one scan [ms]. */
+struct StageTimes
+{
+    double transform = 0, preintegrate = 0, extract = 0, match = 0, solve = 0, insert = 0;
+    double total() const { return transform + preintegrate + extract + match + solve + insert; }
+};
+
+/** What came of one scan. */
+struct ScanResult
+{
+    NavEstimate estimate;  //!< x_k after this scan
+    NavState previous;     //!< x_{k-1} as this scan moved it; x_{k-1} unchanged where it is held
+    std::vector<Vector3d> points;  //!< undistorted points as inserted, world frame [m]
+    std::size_t scan_points = 0;   //!< raw points used, in range and time
+    int features = 0, correspondences = 0, iterations = 0;
+    bool converged = true;
+    bool lidar_used = false;  //!< false: too few correspondences; the IMU alone moved the state
+    double cost = 0, balance = 1;
+    std::array<double, 3> min_translation{};  //!< eigenvalues of the LiDAR block, ascending [1/m^2]
+    std::array<double, 3> min_rotation{};     //!< the same of the rotation [1/rad^2]
+    StageTimes times;
+};
+
+/** The paper's Algorithm 1: one state a scan, every point undistorted anew in every iteration. */
+class Odometry
+{
+ public:
+    Odometry(const OdometryConfig& config, Executor& executor, WarningSink warn);
+
+    /** Starts at a state. Without an IMU, preintegration falls back to constant velocity. */
+    void start(const Initialization& initialization, bool with_imu);
+    bool started() const { return started_; }
+
+    /** Time of the last state. */
+    Time time() const { return previous_.state.t; }
+
+    /** Estimates the state at the scan's end. `imu` should reach from time() to there. Throws
+     * std::invalid_argument if the scan does not end after time(). */
+    ScanResult process(const Scan& scan, const ImuSamples& imu);
+
+ private:
+    PreintegratedImu integrate(Time end, const ImuSamples& imu) const;
+    void estimate(
+        const Features& features, const PreintegratedImu& motion, SweepPath& path,
+        ScanResult& result);
+    void insert(const Scan& scan, const SweepPath& path, ScanResult& result);
+    double balanceOf(const LidarFactor& lidar, const SweepPath& path, int matches) const;
+
+    const OdometryConfig& config_;
+    Executor& executor_;
+    WarningSink warn_;
+    ImuNoise noise_;
+    bool with_imu_ = true, started_ = false;
+    NavPrior previous_;
+    Vector3d previous_rate_ = Vector3d::Zero();
+};
+}  // namespace taut

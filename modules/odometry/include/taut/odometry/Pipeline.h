@@ -1,0 +1,54 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+
+#include "taut/odometry/Odometry.h"
+
+namespace taut
+{
+/** Brings the streams together: waits for the initialisation, holds each scan until the IMU reaches
+ * over its end, and hands both to the odometry. */
+class Pipeline
+{
+ public:
+    using ResultSink = std::function<void(const Scan&, const ScanResult&)>;
+
+    Pipeline(
+        const OdometryConfig& config, Executor& executor, WarningSink warn, ResultSink results);
+
+    void add(const ImuSample& sample);
+    void add(Scan scan);
+
+    /** No more data: processes what was held back. */
+    void finish();
+
+    bool withImu() const { return mode_ != Mode::WithoutImu; }
+    const std::optional<Initialization>& initialization() const { return initialization_; }
+
+ private:
+    enum class Mode
+    {
+        Undecided,  //!< no IMU sample and not enough scans yet
+        WithImu,
+        WithoutImu,
+    };
+
+    void begin(const Initialization& initialization);
+    void beginWithoutImu();
+    void processReady(bool all);
+    void process(const Scan& scan);
+
+    const OdometryConfig& config_;
+    WarningSink warn_;
+    ResultSink results_;
+    Odometry odometry_;
+    Initializer initializer_;
+    std::optional<Initialization> initialization_;
+    Mode mode_ = Mode::Undecided;
+    std::deque<Scan> waiting_;
+    ImuSamples imu_;
+    Time last_imu_ = 0;
+};
+}  // namespace taut

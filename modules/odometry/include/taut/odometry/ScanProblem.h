@@ -1,0 +1,64 @@
+#pragma once
+
+#include "taut/core/Solver.h"
+#include "taut/factors/ImuFactor.h"
+#include "taut/factors/LidarFactor.h"
+#include "taut/odometry/OdometryConfig.h"
+
+namespace taut
+{
+/** A state with the information (inverse covariance) of its error. */
+struct NavPrior
+{
+    NavState state;
+    NavState::Matrix information = NavState::Matrix::Identity();
+};
+
+/** The cost of one scan (paper, equation 18): IMU factor, LiDAR factors, absolute bias prior and,
+ * where the previous state is released, its prior. Unknowns: (x_{k-1}, x_k), or x_k alone. */
+class ScanProblem : public LeastSquaresProblem
+{
+ public:
+    ScanProblem(
+        const NavPrior& previous, const PreintegratedImu& imu, const LidarFactor& lidar,
+        SweepPath& path, const EstimationConfig& config);
+
+    int dimension() const override;
+    double linearize(ProblemMatrix& hessian, ProblemVector& gradient) override;
+    double cost() override;
+    void retract(const ProblemVector& delta) override;
+    void save() override;
+    void restore() override;
+    ProblemMatrix chartJacobian(const ProblemVector& z) const override;
+    ProblemVector maxStep() const override;
+
+    const NavState& previous() const { return previous_; }
+    const NavState& current() const { return current_; }
+
+    void setBalance(double balance) { balance_ = balance; }
+    /** Without LiDAR the problem is prediction and prior alone. */
+    void useLidar(bool use) { use_lidar_ = use; }
+
+    /** Hessian of the LiDAR block by x_k alone: what the scan says of each direction. */
+    NavState::Matrix lidarInformation() const;
+
+    /** Information of x_k after x_{k-1} is marginalised, at the current estimate. */
+    NavState::Matrix marginalInformation();
+
+ private:
+    bool released() const { return config_.previous_state == PreviousState::Released; }
+    double addPrior(ProblemMatrix& H, ProblemVector& g) const;
+    double addImu(ProblemMatrix& H, ProblemVector& g) const;
+    double addBiasPrior(ProblemMatrix& H, ProblemVector& g) const;
+
+    const NavPrior& prior_;
+    const PreintegratedImu& imu_;
+    const LidarFactor& lidar_;
+    SweepPath& path_;
+    const EstimationConfig& config_;
+    NavState previous_, current_, saved_previous_, saved_current_;
+    NavState::Matrix imu_information_;
+    double balance_ = 1;
+    bool use_lidar_ = true;
+};
+}  // namespace taut

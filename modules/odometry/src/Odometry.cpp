@@ -1,0 +1,184 @@
+#include "taut/odometry/Odometry.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace taut
+{
+namespace
+{
+/** Adds the time since its last call to a stage. */
+class Stopwatch
+{
+ public:
+    void stage(double& milliseconds)
+    {
+        const auto now = std::chrono::steady_clock::now();
+        milliseconds += std::chrono::duration<double, std::milli>(now - last_).count();
+        last_ = now;
+    }
+
+ private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+std::array<double, 3> eigenvaluesOf(const Matrix3d& information)
+{
+    const Vector3d e =
+        Eigen::SelfAdjointEigenSolver<Matrix3d>(information, Eigen::EigenvaluesOnly).eigenvalues();
+    return {e[0], e[1], e[2]};
+}
+}  // namespace
+
+Odometry::Odometry(const OdometryConfig& config, Executor& executor, WarningSink warn)
+    : config_(config), executor_(executor), warn_(std::move(warn)), noise_(config.imu_noise)
+{
+}
+
+void Odometry::start(const Initialization& initialization, bool with_imu)
+{
+    with_imu_ = with_imu;
+    started_ = true;
+    previous_.state = initialization.estimate.state;
+    previous_.information =
+        initialization.estimate.covariance.ldlt().solve(NavState::Matrix::Identity());
+    previous_rate_.setZero();
+    noise_ = config_.imu_noise;
+    if (config_.imu_noise_from_rest && initialization.at_rest)
+    {
+        noise_.gyro = std::max(noise_.gyro, initialization.measured_noise.gyro);
+        noise_.accel = std::max(noise_.accel, initialization.measured_noise.accel);
+    }
+    config_.map->clear();
+}
+
+PreintegratedImu Odometry::integrate(Time end, const ImuSamples& imu) const
+{
+    PreintegrationRequest request;
+    request.begin = previous_.state.t;
+    request.end = end;
+    request.samples = &imu;
+    request.previous = previous_.state;
+    request.previous_rate = previous_rate_;
+    request.noise = noise_;
+    return (with_imu_ ? config_.preintegrator : config_.fallback_preintegrator)->integrate(request);
+}
+
+ScanResult Odometry::process(const Scan& raw, const ImuSamples& imu)
+{
+    ScanResult result;
+    Stopwatch watch;
+    const Scan scan = transformScan(raw, config_.range, previous_.state.t);
+    result.scan_points = scan.points.size();
+    watch.stage(result.times.transform);
+
+    const PreintegratedImu motion = integrate(scan.end, imu);
+    const NavState prior = predict(motion, previous_.state);
+    SweepPath path(
+        scan.already_undistorted ? Undistortion::None : config_.estimation.undistortion, motion,
+        previous_.state, prior);
+    watch.stage(result.times.preintegrate);
+
+    const Features features = config_.extractor->extract(scan, warn_);
+    result.features = static_cast<int>(features.points.size());
+    watch.stage(result.times.extract);
+
+    estimate(features, motion, path, result);
+    watch.stage(result.times.solve);
+    result.times.solve -= result.times.match;
+
+    insert(scan, path, result);
+    watch.stage(result.times.insert);
+    return result;
+}
+
+void Odometry::estimate(
+    const Features& features, const PreintegratedImu& motion, SweepPath& path, ScanResult& result)
+{
+    const EstimationConfig& config = config_.estimation;
+    LidarFactor lidar(features, config_.lidar_noise, executor_);
+    ScanProblem problem(previous_, motion, lidar, path, config);
+    problem.useLidar(false);
+
+    std::vector<MapPoint> queries(features.points.size());
+    std::vector<Correspondence> correspondences;
+    double balance = config.inflation;
+    for (int i = 0; i < config.max_iterations && !config_.map->empty(); i++)
+    {
+        Stopwatch watch;
+        const std::vector<Vector3d> world = lidar.undistort(path);
+        for (std::size_t j = 0; j < world.size(); j++)
+            queries[j] = {world[j], features.points[j].kind};
+        config_.map->match(queries, correspondences, executor_);
+        watch.stage(result.times.match);
+
+        lidar.setCorrespondences(correspondences);
+        result.correspondences = static_cast<int>(std::count_if(
+            correspondences.begin(), correspondences.end(),
+            [](const Correspondence& c) { return c.surface != Surface::None; }));
+        result.lidar_used = result.correspondences >= config.min_correspondences;
+        problem.useLidar(result.lidar_used);
+        if (config.balance && i > 0) balance = balanceOf(lidar, path, result.correspondences);
+        problem.setBalance(balance);
+
+        const SolveReport report = config_.solver->solve(problem);
+        result.iterations = i + 1;
+        result.cost = report.final_cost;
+        result.converged = report.last_step < config.min_step;
+        if (result.converged && i > 0) break;
+    }
+    result.balance = balance;
+    result.previous = problem.previous();
+
+    const NavState::Matrix lidar_information = problem.lidarInformation();
+    result.min_translation =
+        eigenvaluesOf(lidar_information.block<3, 3>(NavState::kPosition, NavState::kPosition));
+    result.min_rotation =
+        eigenvaluesOf(lidar_information.block<3, 3>(NavState::kRotation, NavState::kRotation));
+
+    // The posterior of x_k is the prior of the next scan.
+    const NavState::Matrix information = problem.marginalInformation();
+    previous_rate_ =
+        logSO3(problem.previous().T_world_imu.R.transpose() * problem.current().T_world_imu.R) /
+        motion.duration();
+    previous_ = {problem.current(), information};
+    result.estimate.state = previous_.state;
+    result.estimate.covariance = information.ldlt().solve(NavState::Matrix::Identity());
+}
+
+double Odometry::balanceOf(const LidarFactor& lidar, const SweepPath& path, int matches) const
+{
+    const EstimationConfig& config = config_.estimation;
+    if (matches < config.balance_min_matches) return config.inflation;
+    const double spread = std::sqrt(lidar.fit(path, 1.0).reducedChi2());
+    return config.inflation * std::clamp(spread, 0.3, 10.0);
+}
+
+void Odometry::insert(const Scan& scan, const SweepPath& path, ScanResult& result)
+{
+    const std::size_t n = scan.points.size();
+    const auto most = static_cast<std::size_t>(config_.insert.max_points);
+    const std::size_t stride = n > most ? (n + most - 1) / most : 1;
+    const std::size_t kept = (n + stride - 1) / stride;
+    std::vector<MapPoint> points(kept);
+    executor_.forChunks(
+        kept, 1024,
+        [&](std::size_t, std::size_t begin, std::size_t end)
+        {
+            std::size_t hint = 0;
+            for (std::size_t i = begin; i < end; i++)
+            {
+                const LidarPoint& p = scan.points[i * stride];
+                points[i].position =
+                    path.poseAt(scan.timeOf(p), hint) * Vector3d(p.position.cast<double>());
+            }
+        });
+    config_.map->insert(points);
+    config_.map->slide(previous_.state.T_world_imu.p);
+    result.points.resize(kept);
+    for (std::size_t i = 0; i < kept; i++) result.points[i] = points[i].position;
+}
+}  // namespace taut

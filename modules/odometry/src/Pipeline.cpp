@@ -1,0 +1,152 @@
+#include "taut/odometry/Pipeline.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace taut
+{
+namespace
+{
+std::string format(const char* text, double value)
+{
+    char buffer[256];
+    std::snprintf(buffer, sizeof buffer, text, value);
+    return buffer;
+}
+
+constexpr double kImuGap = 0.1;    // [s] worth a warning
+constexpr double kLidarGap = 0.5;  // [s]
+}  // namespace
+
+Pipeline::Pipeline(
+    const OdometryConfig& config, Executor& executor, WarningSink warn, ResultSink results)
+    : config_(config),
+      warn_(warn),
+      results_(std::move(results)),
+      odometry_(config, executor, warn),
+      initializer_(config.initialization, warn)
+{
+    if (!config.preintegrator->needsImu()) beginWithoutImu();
+}
+
+void Pipeline::add(const ImuSample& sample)
+{
+    if (mode_ == Mode::WithoutImu)
+    {
+        if (config_.preintegrator->needsImu() && warn_)
+            warn_(
+                {sample.t, "late_imu",
+                 "IMU samples appear after the estimation has started without them: ignored"});
+        return;
+    }
+    mode_ = Mode::WithImu;
+    if (!imu_.empty() && toSeconds(sample.t - imu_.back().t) > kImuGap && warn_)
+        warn_(
+            {imu_.back().t, "imu_gap",
+             format("no IMU sample for %.3f s", toSeconds(sample.t - imu_.back().t))});
+    imu_.push_back(sample);
+    if (!initialization_ && initializer_.add(sample)) begin(*initializer_.result());
+    processReady(false);
+}
+
+void Pipeline::add(Scan scan)
+{
+    waiting_.push_back(std::move(scan));
+    if (mode_ == Mode::Undecided &&
+        toSeconds(waiting_.back().end - waiting_.front().end) >= config_.imu_wait)
+    {
+        if (warn_)
+            warn_(
+                {waiting_.front().end, "no_imu",
+                 format(
+                     "no IMU sample in the first %.1f s of scans: the motion between scans is "
+                     "taken as constant velocity instead",
+                     config_.imu_wait)});
+        beginWithoutImu();
+    }
+    processReady(false);
+}
+
+void Pipeline::finish()
+{
+    if (mode_ == Mode::Undecided && !waiting_.empty())
+    {
+        if (warn_)
+            warn_(
+                {waiting_.front().end, "no_imu",
+                 "the recording has no IMU sample: constant velocity instead"});
+        beginWithoutImu();
+    }
+    if (mode_ == Mode::WithImu && !initialization_ && initializer_.finish())
+        begin(*initializer_.result());
+    processReady(true);
+}
+
+void Pipeline::begin(const Initialization& initialization)
+{
+    initialization_ = initialization;
+    odometry_.start(initialization, true);
+}
+
+void Pipeline::beginWithoutImu()
+{
+    // Nothing is known but that the world starts here, level, with an unknown velocity.
+    mode_ = Mode::WithoutImu;
+    Initialization start;
+    start.at_rest = false;
+    NavState::Vector sigma;
+    sigma << Vector3d::Constant(1e-5), Vector3d::Constant(10.0), Vector3d::Constant(1e-5),
+        Vector3d::Constant(1e-4), Vector3d::Constant(1e-4);
+    start.estimate.covariance = sigma.cwiseAbs2().asDiagonal();
+    start.estimate.state.t = waiting_.empty() ? 0 : waiting_.front().stamp - 1;
+    initialization_ = start;
+    if (start.estimate.state.t != 0) odometry_.start(start, false);
+}
+
+void Pipeline::processReady(bool all)
+{
+    if (!initialization_) return;
+    if (!odometry_.started() && !waiting_.empty())
+    {
+        initialization_->estimate.state.t = waiting_.front().stamp - 1;
+        odometry_.start(*initialization_, false);
+    }
+    while (!waiting_.empty())
+    {
+        const Time end = waiting_.front().end;
+        const bool imu_covers = !withImu() || (!imu_.empty() && imu_.back().t >= end);
+        if (!imu_covers && !all) return;
+        process(waiting_.front());
+        waiting_.pop_front();
+    }
+}
+
+void Pipeline::process(const Scan& scan)
+{
+    if (scan.end <= odometry_.time())
+    {
+        if (warn_ && scan.end > initialization_->estimate.state.t)
+            warn_(
+                {scan.end, "scan_order",
+                 "a scan that does not end after the one before it is skipped"});
+        return;
+    }
+    const double interval = toSeconds(scan.end - odometry_.time());
+    if (interval > kLidarGap && warn_)
+        warn_({odometry_.time(), "lidar_gap", format("no scan for %.2f s", interval)});
+    const ScanResult result = odometry_.process(scan, imu_);
+    if (!result.lidar_used && warn_ && result.iterations > 0)
+        warn_(
+            {scan.end, "few_correspondences",
+             format(
+                 "only %.0f correspondences: the state follows the IMU alone",
+                 result.correspondences)});
+    results_(scan, result);
+
+    // Samples before the new state are history, but for the one to interpolate with.
+    const auto keep = std::lower_bound(
+        imu_.begin(), imu_.end(), odometry_.time(),
+        [](const ImuSample& s, Time t) { return s.t < t; });
+    if (keep - imu_.begin() > 1) imu_.erase(imu_.begin(), keep - 1);
+}
+}  // namespace taut

@@ -1,0 +1,179 @@
+#include "taut/odometry/ScanProblem.h"
+
+#include <Eigen/Cholesky>
+
+namespace taut
+{
+namespace
+{
+constexpr int kN = NavState::kSize;
+
+NavState::Matrix symmetricInverse(const NavState::Matrix& m)
+{
+    const NavState::Matrix inverse =
+        NavState::Matrix(0.5 * (m + m.transpose())).ldlt().solve(NavState::Matrix::Identity());
+    return 0.5 * (inverse + inverse.transpose());
+}
+}  // namespace
+
+ScanProblem::ScanProblem(
+    const NavPrior& previous, const PreintegratedImu& imu, const LidarFactor& lidar,
+    SweepPath& path, const EstimationConfig& config)
+    : prior_(previous), imu_(imu), lidar_(lidar), path_(path), config_(config)
+{
+    previous_ = saved_previous_ = previous.state;
+    current_ = saved_current_ = predict(imu, previous.state);
+
+    NavState::Matrix covariance = imuCovariance(imu);
+    if (!released())  // the previous state's uncertainty, carried through the residual
+    {
+        const NavState::Matrix F = linearizeImu(imu, previous_, current_).d_previous;
+        covariance += F * symmetricInverse(previous.information) * F.transpose();
+    }
+    imu_information_ = symmetricInverse(covariance);
+}
+
+int ScanProblem::dimension() const
+{
+    return released() ? 2 * kN : kN;
+}
+
+double ScanProblem::addPrior(ProblemMatrix& H, ProblemVector& g) const
+{
+    const NavState::Vector e = previous_.localFrom(prior_.state);
+    NavState::Matrix J = NavState::Matrix::Identity();
+    J.block<3, 3>(NavState::kRotation, NavState::kRotation) =
+        inverseRightJacobianSO3(Vector3d(e.segment<3>(NavState::kRotation)));
+    const NavState::Matrix WJ = prior_.information * J;
+    const NavState::Vector We = prior_.information * e;
+    H.topLeftCorner<kN, kN>() += J.transpose() * WJ;
+    g.head<kN>() += J.transpose() * We;
+    return 0.5 * e.dot(We);
+}
+
+double ScanProblem::addImu(ProblemMatrix& H, ProblemVector& g) const
+{
+    const ImuResidual f = linearizeImu(imu_, previous_, current_);
+    const NavState::Matrix W_current = imu_information_ * f.d_current;
+    const NavState::Vector Wr = imu_information_ * f.residual;
+    H.bottomRightCorner<kN, kN>() += f.d_current.transpose() * W_current;
+    g.tail<kN>() += f.d_current.transpose() * Wr;
+    if (released())
+    {
+        H.topLeftCorner<kN, kN>() += f.d_previous.transpose() * imu_information_ * f.d_previous;
+        const NavState::Matrix cross = f.d_previous.transpose() * W_current;
+        H.topRightCorner<kN, kN>() += cross;
+        H.bottomLeftCorner<kN, kN>() += cross.transpose();
+        g.head<kN>() += f.d_previous.transpose() * Wr;
+    }
+    return 0.5 * f.residual.dot(Wr);
+}
+
+double ScanProblem::addBiasPrior(ProblemMatrix& H, ProblemVector& g) const
+{
+    const double share = imu_.duration() / config_.bias_time;
+    double cost = 0;
+    const auto add = [&](int at, const Vector3d& bias, double sigma)
+    {
+        const double w = share / (sigma * sigma);
+        const int row = dimension() - kN + at;
+        H.diagonal().segment<3>(row).array() += w;
+        g.segment<3>(row) += w * bias;
+        cost += 0.5 * w * bias.squaredNorm();
+    };
+    add(NavState::kBiasAccel, current_.bias_accel, config_.accel_bias_sigma);
+    add(NavState::kBiasGyro, current_.bias_gyro, config_.gyro_bias_sigma);
+    return cost;
+}
+
+double ScanProblem::linearize(ProblemMatrix& hessian, ProblemVector& gradient)
+{
+    hessian.setZero(dimension(), dimension());
+    gradient.setZero(dimension());
+    double cost = addImu(hessian, gradient) + addBiasPrior(hessian, gradient);
+    if (released()) cost += addPrior(hessian, gradient);
+    if (!use_lidar_) return cost;
+    if (released()) return cost + lidar_.linearize(path_, balance_, hessian, gradient);
+    ProblemMatrix H = ProblemMatrix::Zero(2 * kN, 2 * kN);
+    ProblemVector g = ProblemVector::Zero(2 * kN);
+    cost += lidar_.linearize(path_, balance_, H, g);
+    hessian += H.bottomRightCorner(kN, kN);
+    gradient += g.tail(kN);
+    return cost;
+}
+
+double ScanProblem::cost()
+{
+    ProblemMatrix H = ProblemMatrix::Zero(dimension(), dimension());
+    ProblemVector g = ProblemVector::Zero(dimension());
+    double sum = addImu(H, g) + addBiasPrior(H, g);
+    if (released()) sum += addPrior(H, g);
+    return use_lidar_ ? sum + lidar_.cost(path_, balance_) : sum;
+}
+
+void ScanProblem::retract(const ProblemVector& delta)
+{
+    if (released()) previous_ = previous_.retract(delta.head<kN>());
+    current_ = current_.retract(delta.tail<kN>());
+    path_.setStates(previous_, current_);
+}
+
+void ScanProblem::save()
+{
+    saved_previous_ = previous_;
+    saved_current_ = current_;
+}
+
+void ScanProblem::restore()
+{
+    previous_ = saved_previous_;
+    current_ = saved_current_;
+    path_.setStates(previous_, current_);
+}
+
+ProblemMatrix ScanProblem::chartJacobian(const ProblemVector& z) const
+{
+    ProblemMatrix J = ProblemMatrix::Identity(dimension(), dimension());
+    for (int at = NavState::kRotation; at < dimension(); at += kN)
+        J.block<3, 3>(at, at) = rightJacobianSO3(Vector3d(z.segment<3>(at)));
+    return J;
+}
+
+ProblemVector ScanProblem::maxStep() const
+{
+    NavState::Vector one;
+    one << Vector3d::Constant(config_.max_step_position),
+        Vector3d::Constant(config_.max_step_velocity),
+        Vector3d::Constant(config_.max_step_rotation),
+        Vector3d::Constant(config_.max_step_bias_accel),
+        Vector3d::Constant(config_.max_step_bias_gyro);
+    ProblemVector all(dimension());
+    if (released())
+        all << one, one;
+    else
+        all = one;
+    return all;
+}
+
+NavState::Matrix ScanProblem::lidarInformation() const
+{
+    ProblemMatrix H = ProblemMatrix::Zero(2 * kN, 2 * kN);
+    ProblemVector g = ProblemVector::Zero(2 * kN);
+    if (use_lidar_) lidar_.linearize(path_, balance_, H, g);
+    return H.bottomRightCorner<kN, kN>();
+}
+
+NavState::Matrix ScanProblem::marginalInformation()
+{
+    ProblemMatrix H(dimension(), dimension());
+    ProblemVector g(dimension());
+    linearize(H, g);
+    if (!released()) return H;
+    const NavState::Matrix to_previous = H.bottomLeftCorner<kN, kN>();
+    const NavState::Matrix previous = H.topLeftCorner<kN, kN>();
+    const NavState::Matrix current = H.bottomRightCorner<kN, kN>();
+    const NavState::Matrix marginal =
+        current - to_previous * previous.ldlt().solve(to_previous.transpose());
+    return 0.5 * (marginal + marginal.transpose());
+}
+}  // namespace taut

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <optional>
+
+#include "taut/core/Config.h"
+#include "taut/core/Imu.h"
+#include "taut/core/NavState.h"
+#include "taut/core/Warning.h"
+
+namespace taut
+{
+/** What to do when the body moves before it has rested for long enough. */
+enum class OnMotion
+{
+    Start,  //!< start in motion, with a prior that says how little is known
+    Wait,   //!< drop everything before the next rest
+};
+
+struct InitializationConfig
+{
+    double rest_duration = 10.0;  //!< [s] rest that is waited for (paper, section II-D)
+    double min_rest = 1.0;        //!< [s] a shorter rest than asked for is used down to this
+    OnMotion on_motion = OnMotion::Start;
+
+    // Rest: the means over windows agree. Vibration does not disturb means.
+    double window = 0.25;            //!< [s]
+    double max_rate_change = 0.02;   //!< [rad/s] between means of windows
+    double max_accel_change = 0.15;  //!< [m/s^2] between means of windows
+    double max_gyro_bias = 0.1;      //!< [rad/s] a steady rate above this is motion, not a bias
+    double gravity_tolerance = 0.8;  //!< [m/s^2] of the mean specific force from 9.81
+
+    // Prior of the biases, one standard deviation.
+    double accel_bias_sigma = 0.1;  //!< [m/s^2]
+    double gyro_bias_sigma = 0.02;  //!< [rad/s]
+
+    // Prior of a start in motion, one standard deviation.
+    double moving_tilt_sigma = 0.15;     //!< [rad]
+    double moving_velocity_sigma = 5.0;  //!< [m/s]
+
+    void declare(ConfigSection& section);
+};
+
+/** Where the estimation starts from. */
+struct Initialization
+{
+    NavEstimate estimate;  //!< state at the start of the rest (or of the data), with its covariance
+    bool at_rest = true;
+    double rest_duration = 0;  //!< [s] of data used
+    ImuNoise measured_noise;   //!< white noise densities seen at rest; 0 if not at rest
+};
+
+/** Waits for a rest and takes gravity direction and biases from it (paper, section II-D; method
+ * sheet, initialisation). Roll and pitch come from the mean specific force, yaw is 0; what
+ * exceeds 9.81 m/s^2 is a bias of the accelerometer along gravity; tilt and accelerometer bias are
+ * correlated in the covariance, as they are in truth. */
+class Initializer
+{
+ public:
+    Initializer(const InitializationConfig& config, WarningSink warn);
+
+    /** Takes the next sample; true as soon as there is a result. */
+    bool add(const ImuSample& sample);
+
+    /** No more samples: makes the best of what there is; false if there was nothing. */
+    bool finish();
+
+    const std::optional<Initialization>& result() const { return result_; }
+
+ private:
+    struct Window
+    {
+        Time begin = 0, end = 0;
+        int count = 0;
+        Vector3d gyro_sum = Vector3d::Zero(), accel_sum = Vector3d::Zero();
+        Vector3d gyro_square = Vector3d::Zero(), accel_square = Vector3d::Zero();
+
+        void add(const ImuSample& s);
+        void add(const Window& w);
+        Vector3d gyroMean() const { return gyro_sum / count; }
+        Vector3d accelMean() const { return accel_sum / count; }
+    };
+
+    void closeWindow();
+    bool continuesRest(const Window& w) const;
+    bool plausibleRest(const Window& w) const;
+    void onMotion(Time t);
+    Initialization fromRest() const;
+    Initialization fromMotion() const;
+
+    InitializationConfig config_;
+    WarningSink warn_;
+    Window current_, first_, rest_;
+    bool waiting_reported_ = false;
+    std::optional<Initialization> result_;
+};
+}  // namespace taut
