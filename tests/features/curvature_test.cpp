@@ -200,6 +200,21 @@ TEST(CurvatureExtractor, OrdersPointsOfOneTimeByTheSenseOfRotation)
     }
 }
 
+TEST(CurvatureExtractor, WorksWhereShortAndLongStepsAlternate)
+{
+    const SpinningLidar lidar{8, 7200, -5, 5};
+    const Scan dense = lidar.scan(roomWithPillar());
+    Scan scan = dense;
+    scan.points.clear();
+    for (int column = 0; column < lidar.columns; column++)
+        for (int ring = 0; ring < lidar.rings && column % 8 < 2; ring++)
+            scan.points.push_back(
+                dense.points[static_cast<std::size_t>(column * lidar.rings + ring)]);
+    const Features features = CurvatureExtractor().extract(scan, {});
+    EXPECT_GE(ofKind(features, FeatureKind::Edge).size(), 4u * 8);
+    EXPECT_GE(ofKind(features, FeatureKind::Plane).size(), 300u);
+}
+
 TEST(CurvatureExtractor, WorksOnScansWhosePointsHaveOneTime)
 {
     Scan scan = SpinningLidar{}.scan(roomWithPillar());

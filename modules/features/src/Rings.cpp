@@ -88,18 +88,14 @@ double angleBetween(const LidarPoint& a, const LidarPoint& b)
 
 double angularStep(const Scan& scan, const std::vector<PointIndices>& rings)
 {
-    constexpr std::size_t kStride = 7;       // a sample is enough
-    constexpr double kSameDirection = 1e-5;  // [rad]: two returns of one beam
+    constexpr std::size_t kSteps = 8;  // at a time: in packets, short and long ones alternate
     std::vector<double> angles;
     for (const PointIndices& ring : rings)
-        for (std::size_t i = 1; i < ring.size(); i += kStride)
-        {
-            const double angle = angleBetween(scan.points[ring[i - 1]], scan.points[ring[i]]);
-            if (angle > kSameDirection) angles.push_back(angle);
-        }
+        for (std::size_t i = kSteps; i < ring.size(); i += kSteps)
+            angles.push_back(angleBetween(scan.points[ring[i - kSteps]], scan.points[ring[i]]));
     if (angles.empty()) return 0;
     const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
     std::nth_element(angles.begin(), middle, angles.end());
-    return *middle;
+    return *middle / kSteps;
 }
 }  // namespace taut
