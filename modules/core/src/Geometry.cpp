@@ -6,8 +6,8 @@ namespace taut
 {
 namespace
 {
-// Below this angle the series are exact to double precision.
-constexpr double kSmallAngleSquared = 1e-8;
+// Below this angle (0.03 rad) the series of three terms are exact to double precision.
+constexpr double kSmallAngleSquared = 1e-3;
 }  // namespace
 
 Matrix3d hat(const Vector3d& v)
@@ -23,8 +23,8 @@ Matrix3d expSO3(const Vector3d& phi)
     double a, b;  // Exp = I + a hat + b hat^2
     if (theta2 < kSmallAngleSquared)
     {
-        a = 1 - theta2 / 6;
-        b = 0.5 - theta2 / 24;
+        a = 1 - theta2 / 6 * (1 - theta2 / 20 * (1 - theta2 / 42));
+        b = 0.5 - theta2 / 24 * (1 - theta2 / 30 * (1 - theta2 / 56));
     }
     else
     {
@@ -62,8 +62,8 @@ Matrix3d rightJacobianSO3(const Vector3d& phi)
     double a, b;  // Jr = I - a hat + b hat^2
     if (theta2 < kSmallAngleSquared)
     {
-        a = 0.5 - theta2 / 24;
-        b = 1.0 / 6 - theta2 / 120;
+        a = 0.5 - theta2 / 24 * (1 - theta2 / 30 * (1 - theta2 / 56));
+        b = 1.0 / 6 - theta2 / 120 * (1 - theta2 / 42 * (1 - theta2 / 72));
     }
     else
     {

@@ -9,26 +9,35 @@ ImuSample interpolate(const ImuSample& a, const ImuSample& b, Time t)
     return {t, a.gyro + s * (b.gyro - a.gyro), a.accel + s * (b.accel - a.accel)};
 }
 
-MotionDelta stepBackward(
+MotionDelta stepBackwardValue(
     const MotionDelta& at_later, const ImuSample& later, const ImuSample& earlier,
     const Vector3d& bias_accel, const Vector3d& bias_gyro)
 {
     const double dt = toSeconds(later.t - earlier.t);
     const MotionDelta& L = at_later;
     const Vector3d rate = 0.5 * (later.gyro + earlier.gyro) - bias_gyro;
-    const Vector3d a_later = later.accel - bias_accel;
-    const Vector3d a_earlier = earlier.accel - bias_accel;
-
     MotionDelta E;
-    const Matrix3d step = expSO3(-rate * dt);
-    E.gamma = L.gamma * step;
-    E.beta = L.beta - 0.5 * dt * (L.gamma * a_later + E.gamma * a_earlier);
+    E.gamma = L.gamma * expSO3(-rate * dt);
+    E.beta =
+        L.beta -
+        0.5 * dt * (L.gamma * (later.accel - bias_accel) + E.gamma * (earlier.accel - bias_accel));
     E.alpha = L.alpha - 0.5 * dt * (L.beta + E.beta);
+    return E;
+}
+
+MotionDelta stepBackward(
+    const MotionDelta& at_later, const ImuSample& later, const ImuSample& earlier,
+    const Vector3d& bias_accel, const Vector3d& bias_gyro)
+{
+    const MotionDelta& L = at_later;
+    MotionDelta E = stepBackwardValue(at_later, later, earlier, bias_accel, bias_gyro);
+    const double dt = toSeconds(later.t - earlier.t);
+    const Vector3d turned = -(0.5 * (later.gyro + earlier.gyro) - bias_gyro) * dt;
 
     // The same recursion, differentiated by the biases.
-    E.dtheta_dbg = step.transpose() * L.dtheta_dbg + rightJacobianSO3(-rate * dt) * dt;
-    const Matrix3d turned_later = L.gamma * hat(a_later);
-    const Matrix3d turned_earlier = E.gamma * hat(a_earlier);
+    E.dtheta_dbg = expSO3(-turned) * L.dtheta_dbg + rightJacobianSO3(turned) * dt;
+    const Matrix3d turned_later = L.gamma * hat(later.accel - bias_accel);
+    const Matrix3d turned_earlier = E.gamma * hat(earlier.accel - bias_accel);
     E.dbeta_dba = L.dbeta_dba + 0.5 * dt * (L.gamma + E.gamma);
     E.dbeta_dbg =
         L.dbeta_dbg + 0.5 * dt * (turned_later * L.dtheta_dbg + turned_earlier * E.dtheta_dbg);
@@ -47,14 +56,30 @@ MotionDelta correctedForBias(
     return c;
 }
 
-MotionDelta PreintegratedImu::at(Time t, std::size_t& hint) const
+PreintegratedImu PreintegratedImu::correctedForBias(
+    const Vector3d& accel, const Vector3d& gyro) const
+{
+    PreintegratedImu c = *this;
+    for (ImuKnot& knot : c.knots)
+        knot.delta = taut::correctedForBias(knot.delta, accel - bias_accel, gyro - bias_gyro);
+    c.bias_accel = accel;
+    c.bias_gyro = gyro;
+    return c;
+}
+
+std::size_t PreintegratedImu::intervalOf(Time t, std::size_t hint) const
 {
     // Interval [knots[i+1], knots[i]] that holds t; the outermost ones reach on.
     const std::size_t last = knots.size() - 2;
     std::size_t i = hint < last ? hint : last;
     while (i > 0 && t > knots[i].sample.t) --i;
     while (i < last && t < knots[i + 1].sample.t) ++i;
-    hint = i;
+    return i;
+}
+
+MotionDelta PreintegratedImu::at(Time t, std::size_t& hint) const
+{
+    const std::size_t i = hint = intervalOf(t, hint);
     if (t == knots[i].sample.t) return knots[i].delta;
     const ImuSample at_t = interpolate(knots[i + 1].sample, knots[i].sample, t);
     return stepBackward(knots[i].delta, knots[i].sample, at_t, bias_accel, bias_gyro);
@@ -64,5 +89,12 @@ MotionDelta PreintegratedImu::at(Time t) const
 {
     std::size_t hint = 0;
     return at(t, hint);
+}
+
+MotionDelta PreintegratedImu::valueAt(Time t, std::size_t& hint) const
+{
+    const std::size_t i = hint = intervalOf(t, hint);
+    const ImuSample at_t = interpolate(knots[i + 1].sample, knots[i].sample, t);
+    return stepBackwardValue(knots[i].delta, knots[i].sample, at_t, bias_accel, bias_gyro);
 }
 }  // namespace taut

@@ -44,7 +44,7 @@ const char* nameOf(Undistortion mode)
 SweepPath::SweepPath(
     Undistortion mode, const PreintegratedImu& imu, const NavState& prior_previous,
     const NavState& prior_current)
-    : mode_(mode), imu_(imu), prior_current_(prior_current), duration_(imu.duration())
+    : mode_(mode), imu_(imu), chain_(imu), prior_current_(prior_current), duration_(imu.duration())
 {
     setStates(prior_previous, prior_current);
 }
@@ -64,9 +64,9 @@ void SweepPath::setStates(const NavState& previous, const NavState& current)
     if (!isIterated(mode_)) return;
 
     const Matrix3d Rt = current.T_world_imu.R.transpose();
-    start_ = correctedForBias(
-        imu_.knots.back().delta, current.bias_accel - imu_.bias_accel,
-        current.bias_gyro - imu_.bias_gyro);
+    if (current.bias_accel != chain_.bias_accel || current.bias_gyro != chain_.bias_gyro)
+        chain_ = imu_.correctedForBias(current.bias_accel, current.bias_gyro);
+    start_ = chain_.knots.back().delta;
     apriori_start_ = {start_.gamma, aprioriPosition(duration_, start_)};
     const Vector3d start_in_k = Rt * (previous.T_world_imu.p - current.T_world_imu.p);
 
@@ -78,17 +78,14 @@ void SweepPath::setStates(const NavState& previous, const NavState& current)
         Rt * (previous.v_world - current.v_world - kGravityWorld * duration_) - start_.beta;
 }
 
-SweepPath::Local SweepPath::localAt(Time t, std::size_t& hint) const
+SweepPath::Local SweepPath::localAt(Time t, const MotionDelta& motion) const
 {
     Local at;
     at.d = toSeconds(imu_.end() - t);
     at.mu = at.d / duration_;
     if (mode_ == Undistortion::None) return at;
 
-    at.motion = imu_.at(t, hint);
-    if (isIterated(mode_))
-        at.motion = correctedForBias(
-            at.motion, current_.bias_accel - imu_.bias_accel, current_.bias_gyro - imu_.bias_gyro);
+    at.motion = motion;
     at.apriori.R = at.motion.gamma;
     if (mode_ != Undistortion::Rotation) at.apriori.p = aprioriPosition(at.d, at.motion);
 
@@ -109,12 +106,12 @@ SweepPath::Local SweepPath::localAt(Time t, std::size_t& hint) const
 
 Pose SweepPath::poseAt(Time t, std::size_t& hint) const
 {
-    return current_.T_world_imu * localAt(t, hint).corrected;
+    return current_.T_world_imu * localAt(t, chain_.valueAt(t, hint)).corrected;
 }
 
 Pose SweepPath::poseAt(Time t, std::size_t& hint, PathJacobian& jacobian) const
 {
-    const Local at = localAt(t, hint);
+    const Local at = localAt(t, chain_.at(t, hint));
     jacobian.setZero();
     rotationJacobian(at, jacobian);
     positionJacobian(at, jacobian);

@@ -11,7 +11,8 @@ namespace taut
 namespace
 {
 constexpr unsigned kTreeDepth = 16;
-constexpr double kBlockSize = 8.0;  // [m] about: unit of forgetting
+constexpr std::uint32_t kMaxPatience = 7;  // insertions
+constexpr double kBlockSize = 8.0;         // [m] about: unit of forgetting
 
 std::uint64_t pack(std::uint16_t x, std::uint16_t y, std::uint16_t z)
 {
@@ -47,6 +48,9 @@ void OctreeMap::configure(ConfigSection& s)
     s.key("max_thickness", config.max_thickness, kPositive, "m, thicker windows are no planes");
     s.key("max_flatness", config.max_flatness, {0, 1}, "ratio of thickness to the extent");
     s.key("min_width", config.min_width, kPositive, "m, narrower windows have no known normal");
+    s.key(
+        "min_spread", config.min_spread, kNotNegative,
+        "the same as a share of the window's half edge");
     s.key("gate", config.gate, kPositive, "m, largest distance to the surface");
     s.key("min_sigma", config.min_sigma, kPositive, "m, no surface is believed to be thinner");
     s.key("leaf_capacity", config.leaf_capacity, kPositive, "points after which a leaf is full");
@@ -95,12 +99,11 @@ void OctreeMap::insert(const std::vector<MapPoint>& points)
     }
     const unsigned from_depth = depthOf(config.scales - 1);
     const unsigned block_shift = kTreeDepth - blockDepth();
+    StatisticsTree::Cursor cursor(*tree_);
     for (const auto& [packed, statistics] : leaves)
     {
         const octomap::OcTreeKey key = unpack(packed);
-        const StatisticsNode* leaf = tree_->find(key, kTreeDepth);
-        if (leaf != nullptr && leaf->statistics().count >= config.leaf_capacity) continue;
-        tree_->add(key, statistics, from_depth);
+        if (!tree_->add(cursor, key, statistics, from_depth, config.leaf_capacity)) continue;
         blocks_.insert(pack(
             static_cast<std::uint16_t>(key[0] >> block_shift << block_shift),
             static_cast<std::uint16_t>(key[1] >> block_shift << block_shift),
@@ -182,9 +185,13 @@ std::uint32_t OctreeMap::windowAt(Level& level, const std::array<std::uint16_t, 
     return it->second;
 }
 
-void OctreeMap::refresh(Window& window, int level) const
+bool OctreeMap::isStale(const Window& window) const
 {
-    window.checked = insertions_;
+    return window.checked == 0 || insertions_ - window.checked > window.patience;
+}
+
+void OctreeMap::refresh(Window& window, int level, StatisticsTree::Cursor& cursor) const
+{
     const unsigned depth = depthOf(level);
     const auto step = static_cast<std::uint16_t>(1u << level);
     PointStatistics sum;
@@ -194,11 +201,19 @@ void OctreeMap::refresh(Window& window, int level) const
             static_cast<std::uint16_t>(window.corner[0] - (i & 1 ? step : 0)),
             static_cast<std::uint16_t>(window.corner[1] - (i & 2 ? step : 0)),
             static_cast<std::uint16_t>(window.corner[2] - (i & 4 ? step : 0)));
-        if (const StatisticsNode* node = tree_->find(key, depth)) sum.add(node->statistics());
+        if (const StatisticsNode* node = cursor.find(key, depth)) sum.add(node->statistics());
     }
-    // Few new points change a surface little: it is kept until a tenth more have come.
-    if (sum.count < config.min_points || sum.count < 1.1 * window.count) return;
-    compute(window, sum);
+    // Few new points change a surface little: it is kept until a tenth more have come, and one that
+    // has seen none or few for a while is looked at less often.
+    if (sum.count < 1.1 * window.count)
+    {
+        window.patience = std::min(2 * window.patience + 1, kMaxPatience);
+        return;
+    }
+    window.patience = 0;
+    const double min_width = config.min_spread * config.leaf_size * (1 << level);
+    window.min_width2 = min_width * min_width;
+    if (sum.count >= config.min_points) compute(window, sum);
 }
 
 void OctreeMap::compute(Window& window, const PointStatistics& statistics) const
@@ -221,7 +236,7 @@ bool OctreeMap::isPlane(const Window& w) const
     return w.count >= config.min_points &&
            w.thickness2 < config.max_thickness * config.max_thickness &&
            w.thickness2 < config.max_flatness * config.max_flatness * w.width2 &&
-           w.width2 > config.min_width * config.min_width;
+           w.width2 > config.min_width * config.min_width && w.width2 > w.min_width2;
 }
 
 bool OctreeMap::isLine(const Window& w) const
@@ -301,7 +316,7 @@ void OctreeMap::match(
                 continue;
             const std::uint32_t w = windowAt(level, corner);
             found[i * scales + l] = w;
-            if (level.windows[w].checked != insertions_)
+            if (isStale(level.windows[w]))
             {
                 level.windows[w].checked = insertions_;
                 stale.push_back(w);
@@ -311,8 +326,9 @@ void OctreeMap::match(
             stale.size(), 64,
             [&](std::size_t, std::size_t begin, std::size_t end)
             {
+                StatisticsTree::Cursor cursor(*tree_);
                 for (std::size_t i = begin; i < end; i++)
-                    refresh(level.windows[stale[i]], static_cast<int>(l));
+                    refresh(level.windows[stale[i]], static_cast<int>(l), cursor);
             });
     }
     executor.forChunks(

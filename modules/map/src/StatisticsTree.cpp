@@ -1,5 +1,7 @@
 #include "taut/map/StatisticsTree.h"
 
+#include <algorithm>
+
 namespace taut
 {
 void PointStatistics::add(const Eigen::Vector3d& p)
@@ -29,33 +31,53 @@ Eigen::Matrix3d PointStatistics::scatter() const
     return m - sum * sum.transpose() / count;
 }
 
-void StatisticsTree::add(
-    const octomap::OcTreeKey& key, const PointStatistics& statistics, unsigned from_depth)
+unsigned StatisticsTree::Cursor::sharedDepth(const octomap::OcTreeKey& key) const
+{
+    const unsigned differing = static_cast<unsigned>(key[0] ^ key_[0]) |
+                               static_cast<unsigned>(key[1] ^ key_[1]) |
+                               static_cast<unsigned>(key[2] ^ key_[2]);
+    unsigned shared = tree_.tree_depth;
+    for (unsigned bits = differing; bits != 0; bits >>= 1) --shared;
+    return shared;
+}
+
+const StatisticsNode* StatisticsTree::Cursor::find(const octomap::OcTreeKey& key, unsigned depth)
+{
+    if (tree_.root == nullptr) return nullptr;
+    way_[0] = tree_.root;
+    depth_ = std::min(depth_, sharedDepth(key));
+    key_ = key;
+    while (depth_ < depth)
+    {
+        const unsigned child =
+            octomap::computeChildIdx(key, static_cast<int>(tree_.tree_depth - depth_ - 1));
+        if (!tree_.nodeChildExists(way_[depth_], child)) return nullptr;
+        way_[depth_ + 1] = tree_.getNodeChild(way_[depth_], child);
+        depth_++;
+    }
+    return way_[depth];
+}
+
+bool StatisticsTree::add(
+    Cursor& cursor, const octomap::OcTreeKey& key, const PointStatistics& statistics,
+    unsigned from_depth, double capacity)
 {
     if (root == nullptr)
     {
         root = new StatisticsNode();
         tree_size++;
     }
-    StatisticsNode* node = root;
-    for (unsigned depth = 1; depth <= tree_depth; depth++)
+    const StatisticsNode* leaf = cursor.find(key, tree_depth);
+    if (leaf != nullptr && leaf->statistics().count >= capacity) return false;
+    for (; cursor.depth_ < tree_depth; cursor.depth_++)
     {
-        const unsigned child = octomap::computeChildIdx(key, static_cast<int>(tree_depth - depth));
-        node =
-            nodeChildExists(node, child) ? getNodeChild(node, child) : createNodeChild(node, child);
-        if (depth >= from_depth) node->statistics().add(statistics);
+        const unsigned child =
+            octomap::computeChildIdx(key, static_cast<int>(tree_depth - cursor.depth_ - 1));
+        cursor.way_[cursor.depth_ + 1] = createNodeChild(cursor.way_[cursor.depth_], child);
     }
+    for (unsigned d = from_depth; d <= tree_depth; d++)
+        cursor.way_[d]->statistics().add(statistics);
     size_changed = true;
-}
-
-const StatisticsNode* StatisticsTree::find(const octomap::OcTreeKey& key, unsigned depth) const
-{
-    const StatisticsNode* node = root;
-    for (unsigned d = 1; node != nullptr && d <= depth; d++)
-    {
-        const unsigned child = octomap::computeChildIdx(key, static_cast<int>(tree_depth - d));
-        node = nodeChildExists(node, child) ? getNodeChild(node, child) : nullptr;
-    }
-    return node;
+    return true;
 }
 }  // namespace taut

@@ -48,16 +48,31 @@ class PreintegratedImu
     Time begin() const { return knots.back().sample.t; }            //!< t_{k-1}
     double duration() const { return toSeconds(end() - begin()); }  //!< [s]
 
-    /** The motion at time t, by one partial mid-point step from the next later knot. `hint` is the
-     * index of the knot to try first, and receives the one used: a walk through sorted times costs
-     * no search. Times outside [begin, end] are extrapolated from the nearest interval. */
+    /** The chain for other biases, its knots corrected to first order. */
+    PreintegratedImu correctedForBias(const Vector3d& accel, const Vector3d& gyro) const;
+
+    /** The motion at time t with its derivatives, by one partial mid-point step from the next later
+     * knot. `hint` is the index of the knot to try first, and receives the one used: a walk through
+     * sorted times costs no search. Times outside [begin, end] are extrapolated from the nearest
+     * interval. */
     MotionDelta at(Time t, std::size_t& hint) const;
     MotionDelta at(Time t) const;
+
+    /** The same without the derivatives. */
+    MotionDelta valueAt(Time t, std::size_t& hint) const;
+
+ private:
+    std::size_t intervalOf(Time t, std::size_t hint) const;
 };
 
 /** One backward mid-point step (paper, equation 8): the motion at `earlier` from the one at
  * `later`, with its derivatives by the biases. */
 MotionDelta stepBackward(
+    const MotionDelta& at_later, const ImuSample& later, const ImuSample& earlier,
+    const Vector3d& bias_accel, const Vector3d& bias_gyro);
+
+/** The same without the derivatives, which are left zero: for the many points of a scan. */
+MotionDelta stepBackwardValue(
     const MotionDelta& at_later, const ImuSample& later, const ImuSample& earlier,
     const Vector3d& bias_accel, const Vector3d& bias_gyro);
 

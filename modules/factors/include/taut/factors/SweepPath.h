@@ -59,13 +59,14 @@ class SweepPath
         Matrix3d correction = Matrix3d::Identity();  // dR_j
     };
 
-    Local localAt(Time t, std::size_t& hint) const;
+    Local localAt(Time t, const MotionDelta& motion) const;
     Vector3d aprioriPosition(double d, const MotionDelta& motion) const;
     void rotationJacobian(const Local& at, PathJacobian& J) const;
     void positionJacobian(const Local& at, PathJacobian& J) const;
 
     Undistortion mode_;
     const PreintegratedImu& imu_;
+    PreintegratedImu chain_;  // for the current biases
     NavState prior_current_, previous_, current_;
     MotionDelta start_;                     // motion back to t_{k-1}, for the current biases
     double duration_;                       // Delta [s]

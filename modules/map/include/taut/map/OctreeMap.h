@@ -15,14 +15,15 @@ namespace taut
 {
 struct OctreeMapConfig
 {
-    double leaf_size = 0.25;  //!< [m] edge of the smallest node; the smallest window is twice that
-    int scales = 4;           //!< number of window sizes, each twice the one before
-    int min_points = 8;       //!< fewest points of a window that is believed
+    double leaf_size = 0.125;  //!< [m] edge of the smallest node; the smallest window is twice that
+    int scales = 5;            //!< number of window sizes, each twice the one before
+    int min_points = 8;        //!< fewest points of a window that is believed
     double scale_tolerance =
         1.3;  //!< a larger window may be thicker than the thinnest by this factor
     double max_thickness = 0.15;  //!< [m] thicker windows are no planes
     double max_flatness = 0.2;    //!< largest ratio of thickness to the smaller extent in the plane
-    double min_width = 0.1;       //!< [m] deviation across a window that a normal needs
+    double min_width = 0.05;      //!< [m] deviation across a window that a normal needs
+    double min_spread = 0.2;      //!< the same as a share of the half edge of the window
     double gate = 0.8;            //!< [m] largest distance from a surface to be matched with it
     double min_sigma = 0.005;     //!< [m] no surface is believed to be thinner
     double leaf_capacity = 1000;  //!< points after which a leaf is full and stays as it is
@@ -56,11 +57,13 @@ class OctreeMap : public Map
     /** What the points of a window look like. */
     struct Window
     {
-        std::uint32_t checked = 0;  //!< insertion after which it was last compared with the tree
-        double count = 0;           //!< points when it was computed; 0: not known yet
+        std::uint32_t checked = 0;   //!< insertion after which it was last compared with the tree
+        std::uint32_t patience = 0;  //!< insertions to wait before it is compared again
+        double count = 0;            //!< points when it was computed; 0: not known yet
         Vector3d mean = Vector3d::Zero(), normal = Vector3d::UnitZ(), axis = Vector3d::UnitX();
         double thickness2 = 0;           //!< unbiased variance along the normal [m^2]
         double width2 = 0, length2 = 0;  //!< variances along the other two axes [m^2]
+        double min_width2 = 0;           //!< [m^2] of this size of window
         std::array<std::uint16_t, 3> corner{};
     };
     /** Mixes all bits of a packed key into the low ones, which alone choose the bucket. */
@@ -82,7 +85,8 @@ class OctreeMap : public Map
 
     bool cornerOf(const Vector3d& p, int level, std::array<std::uint16_t, 3>& corner) const;
     std::uint32_t windowAt(Level& level, const std::array<std::uint16_t, 3>& corner) const;
-    void refresh(Window& window, int level) const;
+    void refresh(Window& window, int level, StatisticsTree::Cursor& cursor) const;
+    bool isStale(const Window& window) const;
     void compute(Window& window, const PointStatistics& statistics) const;
     Correspondence choose(
         const Vector3d& query, FeatureKind kind, const Window* const* windows) const;

@@ -4,6 +4,7 @@
 #include <octomap/OcTreeDataNode.h>
 
 #include <Eigen/Core>
+#include <array>
 
 namespace taut
 {
@@ -49,10 +50,29 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
     bool isNodeCollapsible(const StatisticsNode*) const override { return false; }
     bool pruneNode(StatisticsNode*) override { return false; }
 
-    /** Adds statistics to the leaf of a key and to its ancestors from the given depth down. */
-    void add(const octomap::OcTreeKey& key, const PointStatistics& statistics, unsigned from_depth);
+    /** The way from the root to the node looked up last. Near keys share most of their way: the
+     * next look-up starts where both part. Valid until the tree is changed by others. */
+    class Cursor
+    {
+     public:
+        explicit Cursor(const StatisticsTree& tree) : tree_(tree) {}
+        /** The node of a key at a depth, or null. */
+        const StatisticsNode* find(const octomap::OcTreeKey& key, unsigned depth);
 
-    /** The node of a key at a depth, or null. */
-    const StatisticsNode* find(const octomap::OcTreeKey& key, unsigned depth) const;
+     private:
+        friend class StatisticsTree;
+        unsigned sharedDepth(const octomap::OcTreeKey& key) const;
+
+        const StatisticsTree& tree_;
+        std::array<StatisticsNode*, 17> way_{};
+        octomap::OcTreeKey key_;
+        unsigned depth_ = 0;  // of the last node of the way that exists
+    };
+
+    /** Adds statistics to the leaf of a key and to its ancestors from the given depth down, unless
+     * the leaf holds `capacity` points already. False if it does. */
+    bool add(
+        Cursor& cursor, const octomap::OcTreeKey& key, const PointStatistics& statistics,
+        unsigned from_depth, double capacity);
 };
 }  // namespace taut
