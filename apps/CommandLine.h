@@ -3,6 +3,7 @@
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 
 #include <iostream>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -25,6 +26,7 @@ inline bool parseCommandLine(TCLAP::CmdLine& cmd, int argc, char** argv)
             throw UsageError(e.error() + " " + e.argId());
         }
     } output;
+    const std::unique_ptr<TCLAP::CmdLineOutput> replaced(cmd.getOutput());  // TCLAP would leak it
     cmd.setOutput(&output);
     return cmd.parse(argc, argv);
 }

@@ -47,7 +47,7 @@ taut::PlotFormat plotFormatOf(const std::string& name)
 /** Nothing if only help was asked for. */
 std::optional<Options> parse(int argc, char** argv)
 {
-    TCLAP::CmdLine cmd("Scores an estimated trajectory against the truth", ' ', "0.1");
+    TCLAP::CmdLine cmd("Scores an estimated trajectory against the truth", ' ', TAUT_VERSION);
     TCLAP::ValueArg<std::string> truth(
         "", "truth", "True trajectory (TUM file)", true, "", "FILE", cmd);
     TCLAP::ValueArg<std::string> estimate(

@@ -107,7 +107,7 @@ TEST(AbsoluteError, WithoutAlignmentIsTheOffset)
     ScoreOptions options;
     options.alignment = Alignment::None;
     const Scores scores =
-        scoreTrajectory(truth, test::moved({{Matrix3d::Identity()}, {0, 3, 4}}, truth), options);
+        scoreTrajectory(truth, test::moved({Matrix3d::Identity(), {0, 3, 4}}, truth), options);
     for (const double v :
          {scores.absolute.position.rmse, scores.absolute.position.mean,
           scores.absolute.position.median, scores.absolute.position.max})
