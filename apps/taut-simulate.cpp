@@ -1,24 +1,20 @@
 /** taut-simulate: writes a rawlog with its truth from a scenario.
  * Exit codes: 0 done, 1 failed, 2 bad usage. */
-#include <chrono>
-#include <fstream>
 #include <iostream>
 #include <optional>
 #include <thread>
 
 #include "CommandLine.h"
-#include "taut/rawlog/RawlogWriter.h"
-#include "taut/simulation/Simulator.h"
-#include "taut/trajectory/TrajectoryFile.h"
+#include "Progress.h"
+#include "simulate/Recorder.h"
 
 namespace
 {
-using namespace taut;
-
 struct Options
 {
-    std::string scenario, output;
+    std::string scenario;
     std::vector<std::string> settings;
+    taut::RecorderConfig recorder;
     int threads = 1;
     bool quiet = false;
 };
@@ -28,7 +24,7 @@ std::optional<Options> parse(int argc, char** argv)
 {
     TCLAP::CmdLine cmd("Writes a rawlog with its truth from a scenario", ' ', "0.1");
     TCLAP::ValueArg<std::string> scenario(
-        "c", "config", "Scenario (config/scenarios/*.yaml)", true, "", "FILE", cmd);
+        "c", "config", "Scenario, as those in config/scenarios", true, "", "SCENARIO.yaml", cmd);
     TCLAP::ValueArg<std::string> output(
         "o", "output",
         "Rawlog to write; beside it OUT.gt.tum (pose of the IMU in the world) and OUT.biases.csv",
@@ -37,101 +33,61 @@ std::optional<Options> parse(int argc, char** argv)
     TCLAP::ValueArg<double> duration(
         "", "duration", "Of the recording, with the rest at its start", false, 0, "S", cmd);
     TCLAP::MultiArg<std::string> set(
-        "", "set", "Overrides a key of the scenario, as imu.rate=100", false, "KEY=VALUE", cmd);
+        "", "set", "Overrides a key of the scenario, as in imu.rate=100", false, "KEY=VALUE", cmd);
+    TCLAP::SwitchArg points("", "points", "Write OUT.points: the truth of every point", cmd);
+    TCLAP::SwitchArg packets(
+        "", "packets", "Write a VLP-16 or HDL-32E as raw packets instead of points", cmd);
     TCLAP::ValueArg<int> threads(
-        "", "threads", "0 = as many as there are cores", false, 0, "N", cmd);
+        "", "threads", "0 (default): as many as there are cores", false, 0, "N", cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "No progress", cmd);
-    if (!parseCommandLine(cmd, argc, argv)) return {};
+    if (!taut::parseCommandLine(cmd, argc, argv)) return {};
 
     Options options;
     options.scenario = scenario.getValue();
-    options.output = output.getValue();
     options.settings = set.getValue();
     if (seed.isSet()) options.settings.push_back("seed=" + std::to_string(seed.getValue()));
     if (duration.isSet())
         options.settings.push_back("duration=" + std::to_string(duration.getValue()));
-    if (threads.getValue() < 0) throw UsageError("--threads is negative");
+    options.recorder = {output.getValue(), points.getValue(), packets.getValue()};
+    if (threads.getValue() < 0) throw taut::UsageError("--threads is negative");
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
     options.threads = threads.getValue() > 0 ? threads.getValue() : cores;
     options.quiet = quiet.getValue();
     return options;
 }
 
-std::string besides(const std::string& rawlog, const std::string& ending)
+std::vector<taut::simulation::RecordedPose> readRecording(
+    const taut::simulation::MotionConfig& motion)
 {
-    const auto dot = rawlog.rfind(".rawlog");
-    const bool has_ending = dot != std::string::npos && dot + 7 == rawlog.size();
-    return (has_ending ? rawlog.substr(0, dot) : rawlog) + ending;
-}
-
-void writeTruth(const simulation::Simulator& simulator, Time start, const std::string& rawlog)
-{
-    TumWriter tum(besides(rawlog, ".gt.tum"));
-    std::ofstream biases(besides(rawlog, ".biases.csv"));
-    biases << "t,bias_gyro_x,bias_gyro_y,bias_gyro_z,bias_accel_x,bias_accel_y,bias_accel_z\n";
-    const simulation::ImuRecording& imu = simulator.imu();
-    for (std::size_t i = 0; i < imu.times.size(); i++)
-    {
-        const Time t = start + imu.times[i];
-        tum.write({t, simulator.motion().poseAt(toSeconds(imu.times[i]))});
-        biases << formatSeconds(t);
-        for (const Vector3d& bias : {imu.gyro_bias[i], imu.accel_bias[i]})
-            for (int axis = 0; axis < 3; axis++) biases << "," << bias[axis];
-        biases << "\n";
-    }
-    tum.close();
-    biases.close();
-    if (!biases) throw std::runtime_error("cannot write " + besides(rawlog, ".biases.csv"));
-}
-
-void writeRawlog(
-    const simulation::Simulator& simulator, Time start, const Options& options, Executor& executor)
-{
-    RawlogWriter rawlog(options.output);
-    const ImuSamples& samples = simulator.imu().samples;
-    std::size_t next = 0;
-    const auto writeImuUntil = [&](Time end)
-    {
-        for (; next < samples.size() && samples[next].t < end; next++)
-        {
-            ImuSample sample = samples[next];
-            sample.t += start;
-            rawlog.write(sample);
-        }
-    };
-    std::size_t points = 0;
-    for (int k = 0; k < simulator.sweeps(); k++)
-    {
-        simulation::SimulatedScan simulated = simulator.sweep(k, executor);
-        Scan& scan = simulated.scan;
-        writeImuUntil(scan.end);  // in the order of arrival: a scan is there when it has ended
-        scan.stamp += start;
-        scan.end += start;
-        points += scan.points.size();
-        rawlog.write(scan);
-        if (!options.quiet && (k + 1) % 20 == 0)
-            std::cerr << "\rscan " << k + 1 << " of " << simulator.sweeps() << std::flush;
-    }
-    writeImuUntil(std::numeric_limits<Time>::max());
-    rawlog.close();
-    if (!options.quiet)
-        std::cerr << "\r" << simulator.sweeps() << " scans, " << points << " points, " << next
-                  << " IMU samples\n";
+    std::vector<taut::simulation::RecordedPose> recording;
+    if (motion.type == taut::simulation::MotionPreset::Replay)
+        for (const taut::StampedPose& pose : taut::readTum(motion.replay.file))
+            recording.push_back({pose.t, pose.T_world_imu});
+    return recording;
 }
 
 void run(const Options& options)
 {
-    ConfigSection section = simulation::loadScenarioFile(options.scenario, options.settings);
-    const simulation::Scenario scenario = simulation::readScenario(section);
-    const Time start = fromSeconds(scenario.start_time);
-    const simulation::Simulator simulator(scenario);
-    const auto peaks = simulation::peaksOf(simulator.motion());
+    auto section = taut::simulation::loadScenarioFile(options.scenario, options.settings);
+    const taut::simulation::Scenario scenario = taut::simulation::readScenario(section);
+    const taut::simulation::Simulator simulator(scenario, readRecording(scenario.motion));
     if (!options.quiet)
+    {
+        const auto peaks = taut::simulation::peaksOf(simulator.motion());
         std::cerr << "motion: up to " << peaks.speed << " m/s, " << peaks.acceleration << " m/s^2, "
                   << peaks.rate << " rad/s, " << peaks.angular_acceleration << " rad/s^2\n";
-    Executor executor(options.threads);
-    writeRawlog(simulator, start, options, executor);
-    writeTruth(simulator, start, options.output);
+    }
+    taut::Executor executor(options.threads);
+    taut::Recorder recorder(options.recorder, scenario, simulator);
+    taut::Progress progress(static_cast<std::size_t>(simulator.sweeps()), "scans", options.quiet);
+    for (int k = 0; k < simulator.sweeps(); k++)
+    {
+        recorder.add(k, simulator.sweep(k, executor));
+        progress.show(static_cast<std::size_t>(k + 1));
+    }
+    recorder.close();
+    if (!options.quiet)
+        std::cerr << recorder.points() << " points, " << recorder.samples() << " IMU samples\n";
 }
 }  // namespace
 
@@ -141,6 +97,13 @@ int main(int argc, char** argv)
         "taut-simulate",
         [&]
         {
-            if (const auto options = parse(argc, argv)) run(*options);
+            try
+            {
+                if (const auto options = parse(argc, argv)) run(*options);
+            }
+            catch (const taut::ConfigError& e)
+            {
+                throw taut::UsageError(e.what());
+            }
         });
 }

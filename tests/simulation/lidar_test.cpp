@@ -22,18 +22,18 @@ LidarConfig noiseFree()
 
 TEST(Lidar, NoiseFreePointsLieOnSurfaces)
 {
-    const RayCaster world(smallWorld().mesh);
+    const Scene scene = smallScene();
     const Motion motion = motionOf(MotionPreset::Violent, 6, 1);
     Executor executor(1);
     const LidarConfig config = noiseFree();
     const Lidar lidar(config, 1);
     for (const int k : {0, 20, 41})
     {
-        const SimulatedScan s = lidar.sweep(k, motion, world, executor);
+        const SimulatedScan s = lidar.sweep(k, motion, scene, executor);
         ASSERT_GT(s.scan.points.size(), 20000U);
         for (std::size_t i = 0; i < s.scan.points.size(); i += 37)
         {
-            EXPECT_LT(world.clearance(s.surface[i], 0.01), 1e-6);
+            EXPECT_LT(scene.world.clearance(s.surface[i], 0.01), 1e-6);
             // The stored point carries the rounding to float, and nothing more.
             const Pose T = motion.poseAt(toSeconds(s.scan.timeOf(s.scan.points[i])));
             const Vector3d stored =
@@ -45,10 +45,10 @@ TEST(Lidar, NoiseFreePointsLieOnSurfaces)
 
 TEST(Lidar, TruthIsThePointSeenFromTheEndOfTheScan)
 {
-    const RayCaster world(smallWorld().mesh);
+    const Scene scene = smallScene();
     const Motion motion = motionOf(MotionPreset::Violent, 6, 1);
     Executor executor(1);
-    const SimulatedScan s = Lidar(noiseFree(), 1).sweep(40, motion, world, executor);
+    const SimulatedScan s = Lidar(noiseFree(), 1).sweep(40, motion, scene, executor);
     const Pose T_end = motion.poseAt(toSeconds(s.scan.end));
     Time last = 0;
     for (std::size_t i = 0; i < s.truth.size(); i++)
@@ -61,13 +61,13 @@ TEST(Lidar, TruthIsThePointSeenFromTheEndOfTheScan)
 
 TEST(Lidar, ThreadsDoNotChangeTheBits)
 {
-    const RayCaster world(smallWorld().mesh);
+    const Scene scene = smallScene();
     const Motion motion = motionOf(MotionPreset::Fast, 4, 1);
     LidarConfig config = lidarPreset(LidarType::Vlp16);
     const Lidar lidar(config, 9);
     Executor one(1), three(3);
-    const SimulatedScan a = lidar.sweep(25, motion, world, one);
-    const SimulatedScan b = lidar.sweep(25, motion, world, three);
+    const SimulatedScan a = lidar.sweep(25, motion, scene, one);
+    const SimulatedScan b = lidar.sweep(25, motion, scene, three);
     ASSERT_EQ(a.scan.points.size(), b.scan.points.size());
     for (std::size_t i = 0; i < a.scan.points.size(); i++)
     {
@@ -75,19 +75,19 @@ TEST(Lidar, ThreadsDoNotChangeTheBits)
         ASSERT_EQ(a.scan.points[i].offset, b.scan.points[i].offset);
         ASSERT_EQ(a.truth[i], b.truth[i]);
     }
-    const SimulatedScan other = Lidar(config, 10).sweep(25, motion, world, one);
+    const SimulatedScan other = Lidar(config, 10).sweep(25, motion, scene, one);
     EXPECT_NE(a.truth, other.truth);
 }
 
 TEST(Lidar, RangeNoiseHasTheDeviationAskedFor)
 {
-    const RayCaster world(smallWorld().mesh);
+    const Scene scene = smallScene();
     const Motion motion = motionOf(MotionPreset::Calm, 4, 3);
     LidarConfig config = noiseFree();
     Executor executor(1);
-    const SimulatedScan clean = Lidar(config, 1).sweep(3, motion, world, executor);
+    const SimulatedScan clean = Lidar(config, 1).sweep(3, motion, scene, executor);
     config.range_noise = 0.03;
-    const SimulatedScan noisy = Lidar(config, 1).sweep(3, motion, world, executor);
+    const SimulatedScan noisy = Lidar(config, 1).sweep(3, motion, scene, executor);
     ASSERT_EQ(clean.scan.points.size(), noisy.scan.points.size());
     double sum = 0;
     for (std::size_t i = 0; i < clean.scan.points.size(); i++)
@@ -101,14 +101,14 @@ TEST(Lidar, FarAndGrazingShotsAreLostFirst)
 {
     Mesh mesh;
     addQuad(mesh, {-200, -200, 0}, {200, -200, 0}, {200, 200, 0}, {-200, 200, 0}, 0.5F);
-    const RayCaster world(mesh);
+    const Scene scene{RayCaster(mesh), {}};
     const Motion motion = motionOf(MotionPreset::Calm, 2, 2);
     LidarConfig config = noiseFree();
     Executor executor(1);
     const auto count = [&](float from, float to, const LidarConfig& c)
     {
         std::size_t n = 0;
-        for (const LidarPoint& p : Lidar(c, 1).sweep(0, motion, world, executor).scan.points)
+        for (const LidarPoint& p : Lidar(c, 1).sweep(0, motion, scene, executor).scan.points)
             n += p.position.norm() >= from && p.position.norm() < to;
         return static_cast<double>(n);
     };
@@ -127,9 +127,9 @@ TEST(LidarPattern, Vlp16FiresAsItsManualSays)
     EXPECT_NEAR(shots[1].direction.z(), std::sin(M_PI / 180), 1e-12);
     EXPECT_EQ(shots[15].t, 34600);  // 15 * 2.304 us in ticks of 100 ns
     EXPECT_EQ(shots[16].t, 55300);
-    // Clockwise from +y.
-    EXPECT_NEAR(shots[0].direction.y(), std::cos(15 * M_PI / 180), 1e-9);
-    EXPECT_GT(shots[1600].direction.x(), 0.1);
+    // Clockwise from +x.
+    EXPECT_NEAR(shots[0].direction.x(), std::cos(15 * M_PI / 180), 1e-9);
+    EXPECT_LT(shots[1600].direction.y(), -0.1);
     // Sweeps join without overlap or gap.
     const auto next = pattern->sweep(1);
     EXPECT_GT(next.front().t, shots.back().t);

@@ -18,7 +18,13 @@ inline World smallWorld()
 inline Motion motionOf(
     MotionPreset preset, double duration, double rest = 2, std::uint64_t seed = 7)
 {
-    return makeMotion(motionPreset(preset), smallWorld().route, duration, rest, seed);
+    const MotionConfig config = motionPreset(preset);
+    return makeMotion(config, makeCourse(config, smallWorld().route, duration, rest), seed);
+}
+
+inline Scene smallScene()
+{
+    return {RayCaster(smallWorld().mesh), {}};
 }
 
 inline const std::vector<MotionPreset> kMovingPresets{MotionPreset::Calm,    MotionPreset::Walk,

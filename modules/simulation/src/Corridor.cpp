@@ -42,6 +42,7 @@ World makeCorridor(Random& random)
     world.route.corners = {
         {3, -lane, 0}, {kLength - 3, -lane, 0}, {kLength - 3, lane, 0}, {3, lane, 0}};
     world.route.rounding = 1.0;
+    world.traffic.oncoming = 2 * lane;
     return world;
 }
 }  // namespace taut::simulation

@@ -122,6 +122,7 @@ World makeForest(Random& random)
     addUndergrowth(world.mesh, ground, way, random);
     world.route.corners = way;
     world.route.rounding = 3;
+    world.traffic.oncoming = 1.2;
     return world;
 }
 }  // namespace taut::simulation

@@ -89,6 +89,7 @@ World makeHall(Random& random)
     world.route.corners = {{6, 4.2, 0},   {31, 4.2, 0}, {32, 12, 0}, {29.5, 17.2, 0},
                            {18, 17.8, 0}, {7.5, 16, 0}, {5.5, 10, 0}};
     world.route.rounding = 4;
+    world.traffic.oncoming = 1.5;
     return world;
 }
 }  // namespace taut::simulation

@@ -45,12 +45,12 @@ double signalOf(const Hit& hit, const Vector3d& direction)
  * told apart by the pulse mix (a range between them, weighted by their light), and of others the
  * brightest counts. */
 std::optional<Hit> castBeam(
-    const RayCaster& world, const Vector3d& origin, const Vector3d& direction,
+    const Scene& scene, double t, const Vector3d& origin, const Vector3d& direction,
     const LidarConfig& config, double turn, double radius)
 {
     constexpr double flat = 0.01;         // off the plane of the middle [m]
     constexpr double pulse_length = 0.5;  // surfaces closer than this mix [m]
-    const auto middle = world.cast(origin, direction, config.max_range);
+    const auto middle = scene.cast(t, origin, direction, config.max_range);
     if (config.divergence <= 0) return middle;
     const Vector3d u = direction.unitOrthogonal(), v = direction.cross(u);
     const Vector3d aside =
@@ -62,7 +62,7 @@ std::optional<Hit> castBeam(
     {
         const Vector3d ray = (direction + side * aside).normalized();
         auto& hit = hits[side < 0 ? 1 : 2];
-        hit = world.cast(origin, ray, config.max_range);
+        hit = scene.cast(t, origin, ray, config.max_range);
         one_plane =
             one_plane && hit &&
             std::abs(middle->normal.dot(hit->range * ray - middle->range * direction)) < flat;
@@ -98,8 +98,7 @@ double detectionProbability(const Hit& hit, const Vector3d& direction, double de
 struct Lidar::Return
 {
     LidarPoint point;
-    Vector3d body_point;  // measured point in the IMU frame at its time
-    Vector3d surface;     // world frame
+    Vector3d surface;  // world frame
 };
 
 Lidar::Lidar(const LidarConfig& config, std::uint64_t seed)
@@ -114,7 +113,7 @@ int Lidar::sweeps(double duration) const
 }
 
 std::vector<Lidar::Return> Lidar::castAll(
-    const std::vector<Shot>& shots, int k, const Motion& motion, const RayCaster& world,
+    const std::vector<Shot>& shots, int k, const Motion& motion, const Scene& scene,
     Executor& executor) const
 {
     std::vector<std::vector<Return>> parts(Executor::chunks(shots.size(), kChunk));
@@ -128,9 +127,10 @@ std::vector<Lidar::Return> Lidar::castAll(
             // others.
             const double noise = random.normal(), luck = random.uniform(), loss = random.uniform();
             const double turn = random.uniform(0, M_PI), radius = std::sqrt(random.uniform());
-            const Pose T = motion.poseAt(toSeconds(kStart + shot.t)) * config_.T_imu_lidar;
+            const double t = toSeconds(kStart + shot.t);
+            const Pose T = motion.poseAt(t) * config_.T_imu_lidar;
             const Vector3d direction = T.R * shot.direction;
-            const auto hit = castBeam(world, T.p, direction, config_, turn, radius);
+            const auto hit = castBeam(scene, t, T.p, direction, config_, turn, radius);
             if (!hit || loss < config_.dropout) continue;
             if (config_.detection_range > 0 &&
                 luck > detectionProbability(*hit, direction, config_.detection_range))
@@ -146,7 +146,6 @@ std::vector<Lidar::Return> Lidar::castAll(
                 255 * std::clamp(-hit->normal.dot(direction) * hit->reflectivity, 0.0, 1.0)));
             r.point.offset = static_cast<std::int32_t>(shot.t - shots.front().t);
             r.point.ring = shot.ring;
-            r.body_point = config_.T_imu_lidar * r.point.position.cast<double>();
             r.surface = T.p + hit->range * direction;
             parts[chunk].push_back(r);
         }
@@ -159,10 +158,10 @@ std::vector<Lidar::Return> Lidar::castAll(
 }
 
 SimulatedScan Lidar::sweep(
-    int k, const Motion& motion, const RayCaster& world, Executor& executor) const
+    int k, const Motion& motion, const Scene& scene, Executor& executor) const
 {
     const std::vector<Shot> shots = pattern_->sweep(k);
-    const std::vector<Return> returns = castAll(shots, k, motion, world, executor);
+    const std::vector<Return> returns = castAll(shots, k, motion, scene, executor);
 
     SimulatedScan result;
     Scan& scan = result.scan;
@@ -173,15 +172,27 @@ SimulatedScan Lidar::sweep(
     scan.T_imu_lidar = config_.T_imu_lidar;
     for (const Return& r : returns) scan.end = std::max(scan.end, scan.timeOf(r.point));
 
-    const Pose T_end_world = motion.poseAt(toSeconds(scan.end)).inverse();
     for (const Return& r : returns)
     {
-        const Pose T = T_end_world * motion.poseAt(toSeconds(scan.timeOf(r.point)));
         scan.points.push_back(r.point);
-        result.truth.push_back((T * r.body_point).cast<float>());
         result.surface.push_back(r.surface);
     }
+    result.truth = undistorted(scan, motion);
     return result;
+}
+
+std::vector<Eigen::Vector3f> undistorted(const Scan& scan, const Motion& motion, Duration clock)
+{
+    const Pose T_end_world = motion.poseAt(toSeconds(scan.end - clock)).inverse();
+    std::vector<Eigen::Vector3f> points;
+    points.reserve(scan.points.size());
+    for (const LidarPoint& p : scan.points)
+    {
+        const Pose T_world_imu = motion.poseAt(toSeconds(scan.timeOf(p) - clock));
+        const Vector3d in_imu = scan.T_imu_lidar * p.position.cast<double>();
+        points.push_back((T_end_world * (T_world_imu * in_imu)).cast<float>());
+    }
+    return points;
 }
 
 // Ranges, noise and widths of the beams are those of the data sheets as far as they tell; the

@@ -37,8 +37,8 @@ class SpinningPattern : public LidarPattern
                 shot.t = ticked(firing_period_ * static_cast<double>(i) + l.delay);
                 const double azimuth = 2 * M_PI * rate_ * toSeconds(shot.t) + l.azimuth;
                 shot.direction = {
-                    std::cos(l.elevation) * std::sin(azimuth),
-                    std::cos(l.elevation) * std::cos(azimuth), std::sin(l.elevation)};
+                    std::cos(l.elevation) * std::cos(azimuth),
+                    -std::cos(l.elevation) * std::sin(azimuth), std::sin(l.elevation)};
                 shot.ring = static_cast<std::uint16_t>(laser);
                 shots.push_back(shot);
             }

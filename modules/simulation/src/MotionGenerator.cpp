@@ -11,12 +11,13 @@ namespace taut::simulation
 namespace
 {
 constexpr double kGravity = 9.81;
-constexpr double kRamp = 2.0;           // from rest to full motion [s]
-constexpr double kRunUp = 8.0;          // before time 0, where there is no rest [s]
-constexpr double kSmoothing = 0.4;      // of the progress along the route, width of one pass [s]
-constexpr double kLeanSmoothing = 0.3;  // the same of the accelerations leant into [s]
-constexpr double kAfter = 0.5;          // motion goes on after the end asked for [s]
-constexpr double kRunOut = 1.5;         // made and thrown away: smoothing falters at the end [s]
+constexpr double kRamp = 2.0;        // from rest to full motion [s]
+constexpr double kSmoothing = 0.25;  // width of one pass [s]
+
+std::size_t halfWindow(double spacing)
+{
+    return static_cast<std::size_t>(kSmoothing / spacing / 2);
+}
 
 /** 0 before 0, 1 after 1, three times continuously differentiable. */
 double smoothStep(double x)
@@ -61,37 +62,10 @@ class Wandering
 /** Everything but the shaking: made once. */
 struct Base
 {
-    std::vector<double> times;  // of the control points
-    std::vector<Vector3d> positions;
+    std::vector<Vector3d> positions;  // of the control points
     std::vector<Matrix3d> rotations;
     std::vector<double> envelope;  // 0 at rest, 1 in full motion
 };
-
-struct Progress
-{
-    std::vector<Vector3d> positions;
-    std::vector<double> headings;
-};
-
-Progress progressAlong(
-    const RoutePath& path, const MotionConfig& config, const std::vector<double>& times,
-    double departure)
-{
-    Progress p;
-    double s = config.start * path.length(), v = 0;
-    for (const double t : times)
-    {
-        p.positions.push_back(path.position(s));
-        p.headings.push_back(path.heading(s));
-        if (t < departure) continue;
-        v = std::min(path.speedLimit(s), v + config.limits.acceleration * config.knot_spacing);
-        s += v * config.knot_spacing;
-    }
-    const auto half = static_cast<std::size_t>(kSmoothing / config.knot_spacing / 2);
-    p.positions = smoothed(p.positions, half, false);
-    p.headings = smoothed(p.headings, half, false);
-    return p;
-}
 
 /** Rotation that leans body z towards g + lean * a. */
 Matrix3d leaning(const Vector3d& acceleration, double lean)
@@ -111,31 +85,45 @@ Vector3d stepping(const MotionConfig& config, double t)
     return {0.15 * h * std::sin(phase), 0.8 * h * std::sin(phase / 2), up};
 }
 
-Base makeBase(
-    const MotionConfig& config, const Route& route, double duration, double rest, Random& random)
+/** Where the route leads the body, without sway: smooth enough to be derived twice. */
+std::vector<Vector3d> guided(const Course& course)
 {
-    const double h = config.knot_spacing;
-    const double begin = rest > 0 ? 0 : -kRunUp;
-    const double moving = rest > 0 ? rest + 4 * h : begin;
-    // The smoothing reaches back by half of its three passes.
-    const double departure = moving + 1.5 * (kSmoothing + kLeanSmoothing) + 2 * h;
+    std::vector<Vector3d> positions;
+    for (const double s : course.lengths) positions.push_back(course.path.position(s));
+    return smoothed(positions, halfWindow(course.spacing), false);
+}
 
+std::vector<Matrix3d> headings(const Course& course)
+{
+    std::vector<double> angles;
+    for (const double s : course.lengths) angles.push_back(course.path.heading(s));
+    angles = smoothed(angles, halfWindow(course.spacing), false);
+    std::vector<Matrix3d> rotations;
+    for (const double angle : angles) rotations.push_back(expSO3(Vector3d(0, 0, angle)));
+    return rotations;
+}
+
+void leanInto(
+    std::vector<Matrix3d>& rotations, const std::vector<Vector3d>& path, double h, double lean)
+{
+    std::vector<Vector3d> a(path.size(), Vector3d::Zero());
+    for (std::size_t i = 1; i + 1 < path.size(); i++)
+        a[i] = (path[i + 1] - 2 * path[i] + path[i - 1]) / (h * h);
+    a = smoothed(a, halfWindow(h), false);
+    for (std::size_t i = 0; i < path.size(); i++) rotations[i] = leaning(a[i], lean) * rotations[i];
+}
+
+Base makeBase(const MotionConfig& config, const Course& course, Random& random)
+{
     Base base;
-    const auto lead = static_cast<std::ptrdiff_t>(std::llround(-begin / h)) + Motion::kLead;
-    const auto count =
-        static_cast<std::ptrdiff_t>(Motion::controlsFor(duration + kAfter + kRunOut, h));
-    for (std::ptrdiff_t m = -lead; m < count - Motion::kLead; m++)
-        base.times.push_back(h * static_cast<double>(m));
-
-    const RoutePath path(route, config.limits);
-    const Progress progress = progressAlong(path, config, base.times, departure);
+    const std::vector<Vector3d> path = guided(course);
+    base.rotations = headings(course);
     std::array<Wandering, 3> sway{Wandering(random), Wandering(random), Wandering(random)};
-    for (std::size_t i = 0; i < base.times.size(); i++)
+    for (std::size_t i = 0; i < path.size(); i++)
     {
-        const double t = base.times[i], since = t - moving;
+        const double t = course.times[i], since = t - course.departure;
         const double on = smoothStep(since / kRamp);
         base.envelope.push_back(on);
-        const Matrix3d R = expSO3(Vector3d(0, 0, progress.headings[i]));
         Vector3d p = stepping(config, since);
         for (int axis = 0; axis < 3; axis++)
             p[axis] += config.sway * sway[axis].at(config.sway_frequency * t);
@@ -143,39 +131,26 @@ Base makeBase(
         const double climb =
             config.climb * (1 - std::cos(2 * M_PI * std::max(0.0, since) / config.climb_period));
         base.positions.emplace_back(
-            progress.positions[i] + R * (on * p) + Vector3d(0, 0, config.height + on * climb));
-        base.rotations.push_back(R);
+            path[i] + base.rotations[i] * (on * p) + Vector3d(0, 0, config.height + on * climb));
     }
-
-    if (config.lean == 0) return base;
-    std::vector<Vector3d> accelerations(base.times.size(), Vector3d::Zero());
-    for (std::size_t i = 1; i + 1 < base.times.size(); i++)
-        accelerations[i] =
-            (progress.positions[i + 1] - 2 * progress.positions[i] + progress.positions[i - 1]) /
-            (h * h);
-    accelerations =
-        smoothed(accelerations, static_cast<std::size_t>(kLeanSmoothing / h / 2), false);
-    for (std::size_t i = 0; i < base.times.size(); i++)
-        base.rotations[i] = leaning(accelerations[i], config.lean) * base.rotations[i];
+    if (config.lean != 0) leanInto(base.rotations, path, course.spacing, config.lean);
     return base;
 }
 
 Motion shaken(
-    const Base& base, const std::array<Wandering, 3>& waves, double amplitude, double frequency,
-    double spacing)
+    const Course& course, const Base& base, const std::array<Wandering, 3>& waves, double amplitude,
+    double frequency)
 {
-    std::vector<Pose> controls;
-    for (std::size_t i = 0; i < base.times.size(); i++)
+    std::vector<Pose> controls(course.times.size());
+    for (std::size_t i = 0; i < controls.size(); i++)
     {
-        if (base.times[i] < -(Motion::kLead + 0.5) * spacing) continue;  // the run-up
-        if (base.times[i] > base.times.back() - kRunOut) break;
-        const double a = amplitude * base.envelope[i], c = frequency * base.times[i];
+        const double a = amplitude * base.envelope[i], c = frequency * course.times[i];
         const Matrix3d R = base.rotations[i] * expSO3(Vector3d(0, 0, a * waves[2].at(c))) *
                            expSO3(Vector3d(0, a * waves[1].at(c), 0)) *
                            expSO3(Vector3d(a * waves[0].at(c), 0, 0));
-        controls.push_back({R, base.positions[i]});
+        controls[i] = {R, base.positions[i]};
     }
-    return {controls, spacing};
+    return alongCourse(course, controls);
 }
 }  // namespace
 
@@ -195,14 +170,31 @@ MotionPeaks peaksOf(const Motion& motion)
     return peaks;
 }
 
-Motion makeMotion(
-    const MotionConfig& config, const Route& route, double duration, double rest,
-    std::uint64_t seed)
+Motion alongCourse(const Course& course, const std::vector<Pose>& controls)
+{
+    std::vector<Pose> used;
+    for (std::size_t i = 0; i < controls.size(); i++)
+    {
+        if (course.times[i] < -(Motion::kLead + 0.5) * course.spacing) continue;  // the run-up
+        if (course.times[i] >
+            course.times.back() - Course::kRunOut + Motion::kLead * course.spacing)
+            break;
+        used.push_back(controls[i]);
+    }
+    return {used, course.spacing};
+}
+
+Course makeCourse(const MotionConfig& config, const Route& route, double duration, double rest)
+{
+    return {route, config.limits, config.start, duration, rest, config.knot_spacing};
+}
+
+Motion makeMotion(const MotionConfig& config, const Course& course, std::uint64_t seed)
 {
     Random random(seed, 1);
-    const Base base = makeBase(config, route, duration, rest, random);
+    const Base base = makeBase(config, course, random);
     const std::array<Wandering, 3> waves{Wandering(random), Wandering(random), Wandering(random)};
-    if (config.shake_rate <= 0) return shaken(base, waves, 0, 0, config.knot_spacing);
+    if (config.shake_rate <= 0) return shaken(course, base, waves, 0, 0);
 
     // The amplitude sets the rate, and the frequency the ratio of acceleration and rate; what the
     // route and the leaning add to both is known only from the result.
@@ -210,8 +202,7 @@ Motion makeMotion(
     double amplitude = config.shake_rate / (2 * M_PI * frequency) / 2;
     for (int i = 0; i < 10; i++)
     {
-        const MotionPeaks peaks =
-            peaksOf(shaken(base, waves, amplitude, frequency, config.knot_spacing));
+        const MotionPeaks peaks = peaksOf(shaken(course, base, waves, amplitude, frequency));
         if (peaks.rate < 1e-6) break;  // the recording ends before the rest does
         const double rate = config.shake_rate / peaks.rate;
         const double acceleration = config.shake_acceleration / peaks.angular_acceleration;
@@ -220,7 +211,7 @@ Motion makeMotion(
         frequency *= faster;
         amplitude *= std::clamp(rate / faster, 0.5, 2.0);
     }
-    return shaken(base, waves, amplitude, frequency, config.knot_spacing);
+    return shaken(course, base, waves, amplitude, frequency);
 }
 
 MotionConfig motionPreset(MotionPreset preset)
@@ -294,9 +285,16 @@ void declare(ConfigSection& section, MotionConfig& config)
          {"fast", MotionPreset::Fast},
          {"violent", MotionPreset::Violent},
          {"vehicle", MotionPreset::Vehicle},
-         {"flight", MotionPreset::Flight}},
+         {"flight", MotionPreset::Flight},
+         {"replay", MotionPreset::Replay}},
         "preset that the other keys change");
     config = motionPreset(config.type);
+    section.key("knot_spacing", config.knot_spacing, {1e-3, 0.2}, "s, of the spline");
+    if (config.type == MotionPreset::Replay)
+    {
+        declare(section, config.replay);
+        return;
+    }
     SpeedLimits& limits = config.limits;
     section.key("height", config.height, kAnyNumber, "m, of the body over the route");
     section.key("speed", limits.speed, kPositive, "m/s, along the route");
@@ -313,6 +311,5 @@ void declare(ConfigSection& section, MotionConfig& config)
     section.key("climb", config.climb, kNotNegative, "m, amplitude of slow rising and falling");
     section.key("climb_period", config.climb_period, kPositive, "s");
     section.key("lean", config.lean, {-1, 1}, "1 = thrust along body z, < 0 = on springs");
-    section.key("knot_spacing", config.knot_spacing, {1e-3, 0.2}, "s, of the spline");
 }
 }  // namespace taut::simulation

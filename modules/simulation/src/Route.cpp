@@ -42,7 +42,8 @@ void RoutePath::resample(const Route& route)
     double total = 0;
     for (std::size_t i = 0; i < n; i++)
         total += (route.corners[(i + 1) % n] - route.corners[i]).norm();
-    if (!(total > 10 * spacing_)) throw std::invalid_argument("a route of no length");
+    if (!(total > 10 * spacing_))
+        throw std::invalid_argument("the route through the world has no length (world.route)");
     const auto count = static_cast<std::size_t>(total / spacing_);
     spacing_ = total / static_cast<double>(count);
 

@@ -53,7 +53,13 @@ Scenario readScenario(ConfigSection& section)
     declare(section.section("motion"), s.motion);
     declare(section.section("lidar"), s.lidar);
     declare(section.section("imu"), s.imu);
+    declare(section.section("faults"), s.faults);
+    section.key(
+        "clearance", s.clearance, kNotNegative, "m, of the body from every surface at the least");
     section.rejectUnknown();
+    if (s.motion.type == MotionPreset::Replay && s.world.moving > 0)
+        throw ConfigError(
+            "configuration key 'world.moving': a replayed motion has no route for others");
     return s;
 }
 }  // namespace taut::simulation

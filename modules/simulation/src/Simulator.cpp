@@ -5,19 +5,32 @@
 
 namespace taut::simulation
 {
-namespace
+Simulator::Stage Simulator::makeStage(
+    const Scenario& scenario, const std::vector<RecordedPose>& recording)
 {
-constexpr double kClearance = 0.25;  // of the body from every surface [m]
+    const auto seed = static_cast<std::uint64_t>(scenario.seed);
+    const MotionConfig& motion = scenario.motion;
+    World world = makeWorld(scenario.world);
+    Scene scene{RayCaster(std::move(world.mesh)), {}};
+    if (motion.type == MotionPreset::Replay)
+        return {
+            std::move(scene),
+            makeReplay(
+                recording, motion.replay, motion.knot_spacing, scenario.duration, scenario.rest)};
+    const Course course = makeCourse(motion, world.route, scenario.duration, scenario.rest);
+    scene.movers = makeTraffic(world.traffic, course, scenario.world.moving, seed);
+    return {std::move(scene), makeMotion(motion, course, seed)};
 }
 
-Simulator::Simulator(const Scenario& scenario) : Simulator(scenario, makeWorld(scenario.world)) {}
+Simulator::Simulator(const Scenario& scenario, const std::vector<RecordedPose>& recording)
+    : Simulator(scenario, makeStage(scenario, recording))
+{
+}
 
-Simulator::Simulator(const Scenario& scenario, World world)
+Simulator::Simulator(const Scenario& scenario, Stage stage)
     : scenario_(scenario),
-      caster_(std::move(world.mesh)),
-      motion_(makeMotion(
-          scenario.motion, world.route, scenario.duration, scenario.rest,
-          static_cast<std::uint64_t>(scenario.seed))),
+      scene_(std::move(stage.scene)),
+      motion_(std::move(stage.motion)),
       imu_(simulateImu(
           scenario.imu, motion_, scenario.duration, static_cast<std::uint64_t>(scenario.seed))),
       lidar_(scenario.lidar, static_cast<std::uint64_t>(scenario.seed))
@@ -31,8 +44,8 @@ void Simulator::checkClearance() const
     for (double t = 0; t <= scenario_.duration; t += step)
     {
         const Vector3d p = motion_.poseAt(t).p;
-        const double clearance = caster_.clearance(p, kClearance);
-        if (clearance >= kClearance) continue;
+        const double clearance = scene_.world.clearance(p, scenario_.clearance);
+        if (clearance >= scenario_.clearance) continue;
         std::ostringstream s;
         s << "the motion comes within " << clearance << " m of a surface at t = " << t << " s, at ("
           << p.transpose() << ")";
@@ -42,6 +55,6 @@ void Simulator::checkClearance() const
 
 SimulatedScan Simulator::sweep(int k, Executor& executor) const
 {
-    return lidar_.sweep(k, motion_, caster_, executor);
+    return lidar_.sweep(k, motion_, scene_, executor);
 }
 }  // namespace taut::simulation

@@ -187,6 +187,7 @@ World makeStreet(Random& random)
     std::rotate(
         world.route.corners.begin(), world.route.corners.begin() + 12, world.route.corners.end());
     world.route.rounding = 16;
+    world.traffic = {true, 9, 14, 2 * kLane};
     return world;
 }
 }  // namespace taut::simulation

@@ -21,9 +21,6 @@ Route parseRoute(const WorldConfig& config)
             throw ConfigError("configuration key 'world.route': '" + text + "' is not 'x y z'");
         route.corners.push_back(p);
     }
-    if (route.corners.size() < 2)
-        throw ConfigError(
-            "configuration key 'world.route' needs two corners 'x y z, x y z' or more");
     return route;
 }
 }  // namespace
@@ -40,6 +37,7 @@ void declare(ConfigSection& section, WorldConfig& config)
          {"mesh", WorldType::MeshFile}},
         "kind of world");
     section.key("seed", config.seed, {0, 1e9}, "of what is placed at random");
+    section.key("moving", config.moving, {0, 100}, "number of people or cars that move");
     if (config.type != WorldType::MeshFile) return;
     section.key("file", config.file, "PLY or OBJ, metres, z up");
     section.key("route", config.route, "corners 'x y z, x y z, ...' of a closed way [m]");
@@ -65,6 +63,6 @@ World makeWorld(const WorldConfig& config)
         case WorldType::MeshFile:
             break;
     }
-    return {loadMesh(config.file, static_cast<float>(config.reflectivity)), parseRoute(config)};
+    return {loadMesh(config.file, static_cast<float>(config.reflectivity)), parseRoute(config), {}};
 }
 }  // namespace taut::simulation

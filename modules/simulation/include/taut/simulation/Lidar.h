@@ -10,7 +10,7 @@
 #include "taut/core/Scan.h"
 #include "taut/simulation/LidarPattern.h"
 #include "taut/simulation/Motion.h"
-#include "taut/simulation/RayCaster.h"
+#include "taut/simulation/Scene.h"
 
 namespace taut::simulation
 {
@@ -47,12 +47,15 @@ struct SimulatedScan
 {
     Scan scan;  //!< stamp: time of the first shot of the sweep; times since the start of the
                 //!< simulation
-    /** Each point as it would be measured by a body that stands still where it is at scan.end:
-     * moved by the true motion into the IMU frame at scan.end. Range noise stays in it. */
-    std::vector<Eigen::Vector3f> truth;
-    /** The surface point that the middle of the beam met, world frame. */
+    std::vector<Eigen::Vector3f> truth;  //!< undistorted(): range noise stays in it
+    /** What the middle of the beam met, world frame, at the time of the point. */
     std::vector<Vector3d> surface;
 };
+
+/** Each point of a scan in the IMU frame at scan.end, moved there by the true motion. The scan's
+ * times are ahead of the motion's by `clock`. */
+std::vector<Eigen::Vector3f> undistorted(
+    const Scan& scan, const Motion& motion, Duration clock = 0);
 
 /** Casts the shots of a LiDAR that moves through a world, each at its own time. */
 class Lidar
@@ -65,15 +68,14 @@ class Lidar
 
     /** Sweep k. The same bits with any number of threads. Scan::end is the time of the last point.
      */
-    SimulatedScan sweep(
-        int k, const Motion& motion, const RayCaster& world, Executor& executor) const;
+    SimulatedScan sweep(int k, const Motion& motion, const Scene& scene, Executor& executor) const;
 
     static constexpr Duration kStart = 20'000'000;  //!< the IMU is there first [ns]
 
  private:
     struct Return;
     std::vector<Return> castAll(
-        const std::vector<Shot>& shots, int k, const Motion& motion, const RayCaster& world,
+        const std::vector<Shot>& shots, int k, const Motion& motion, const Scene& scene,
         Executor& executor) const;
 
     LidarConfig config_;

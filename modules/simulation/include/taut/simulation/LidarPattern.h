@@ -37,8 +37,8 @@ struct Laser
     double delay = 0;      //!< after the start of its firing sequence [s]
 };
 
-/** A head that turns clockwise, seen from above, and starts at +y: azimuth a looks at (sin a, cos
- * a), as the Velodyne manuals have it. */
+/** A head that turns clockwise, seen from above, and starts at +x: azimuth a looks at (cos a, -sin
+ * a). */
 std::unique_ptr<LidarPattern> makeSpinningPattern(
     std::vector<Laser> lasers, double firing_period, double rotation_rate);
 

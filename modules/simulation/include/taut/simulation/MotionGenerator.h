@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "taut/core/Config.h"
-#include "taut/core/Time.h"
+#include "taut/simulation/Course.h"
 #include "taut/simulation/Motion.h"
-#include "taut/simulation/Route.h"
+#include "taut/simulation/Replay.h"
 
 namespace taut::simulation
 {
@@ -37,9 +37,8 @@ struct MotionConfig
     double climb = 0;               //!< amplitude of slow rising and falling [m]
     double climb_period = 20;       //!< [s]
     double lean = 0;  //!< tilt into the acceleration: 1 = thrust along body z, < 0 = springs
-    double knot_spacing = 0.02;     //!< of the spline [s]
-    std::string replay_file;        //!< TUM trajectory; for type replay
-    double replay_smoothing = 0.1;  //!< length of the smoothing kernel [s]; for type replay
+    double knot_spacing = 0.02;  //!< of the spline [s]
+    ReplayConfig replay;         //!< for type Replay, which takes none of the above but the spacing
 };
 
 MotionConfig motionPreset(MotionPreset preset);
@@ -47,11 +46,15 @@ MotionConfig motionPreset(MotionPreset preset);
 /** Reads `type` and then the keys that override the preset of that type. */
 void declare(ConfigSection& section, MotionConfig& config);
 
-/** The motion along a route: at rest until `rest` [s] (0: in motion from the first moment on), then
- * along the route. Deterministic in the seed. */
-Motion makeMotion(
-    const MotionConfig& config, const Route& route, double duration, double rest,
-    std::uint64_t seed);
+/** The course of a body along a route: at rest until `rest` [s] (0: in motion from the first moment
+ * on). */
+Course makeCourse(const MotionConfig& config, const Route& route, double duration, double rest);
+
+/** The motion along a course, with all that makes it shake and sway. Deterministic in the seed. */
+Motion makeMotion(const MotionConfig& config, const Course& course, std::uint64_t seed);
+
+/** The spline through poses given at the times of a course. */
+Motion alongCourse(const Course& course, const std::vector<Pose>& controls);
 
 /** Largest angular rate and acceleration of a motion. */
 struct MotionPeaks

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "taut/core/Config.h"
+#include "taut/simulation/Faults.h"
 #include "taut/simulation/ImuModel.h"
 #include "taut/simulation/Lidar.h"
 #include "taut/simulation/MotionGenerator.h"
@@ -17,11 +18,14 @@ struct Scenario
     double duration = 40;  //!< of the recording, with the rest [s]
     double rest = 10;      //!< at its start [s]; 0: in motion from the first moment on
     int seed = 1;
-    double start_time = 1700000000;  //!< of the recording [s since the UNIX epoch]
+    int start_time = 1700000000;  //!< of the recording [s since the UNIX epoch]
     WorldConfig world;
     MotionConfig motion;
     LidarConfig lidar;
     ImuConfig imu;
+    FaultConfig faults;
+    double clearance =
+        0.25;  //!< of the body from every surface: a motion that comes closer is refused [m]
 };
 
 /** Reads a scenario. Throws ConfigError that names the key on anything unknown or out of range. */

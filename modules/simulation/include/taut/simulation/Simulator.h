@@ -2,29 +2,38 @@
 
 #include "taut/core/Parallel.h"
 #include "taut/simulation/Scenario.h"
+#include "taut/simulation/Scene.h"
 
 namespace taut::simulation
 {
-/** A scenario come true: motion, IMU and LiDAR in one world. All times count from its start. */
+/** A scenario come true: motion, IMU and LiDAR in one world, without the faults of the recording.
+ * All times count from its start. */
 class Simulator
 {
  public:
-    /** Throws std::runtime_error if the motion comes too close to a surface, with the time and the
+    /** @param recording poses of the trajectory to replay, for that type of motion
+     * Throws std::runtime_error if the motion comes too close to a surface, with the time and the
      * place. */
-    explicit Simulator(const Scenario& scenario);
+    explicit Simulator(const Scenario& scenario, const std::vector<RecordedPose>& recording = {});
 
     const Motion& motion() const { return motion_; }
-    const RayCaster& world() const { return caster_; }
+    const Scene& scene() const { return scene_; }
     const ImuRecording& imu() const { return imu_; }
     int sweeps() const { return lidar_.sweeps(scenario_.duration); }
     SimulatedScan sweep(int k, Executor& executor) const;
 
  private:
-    Simulator(const Scenario& scenario, World world);
+    struct Stage
+    {
+        Scene scene;
+        Motion motion;
+    };
+    static Stage makeStage(const Scenario& scenario, const std::vector<RecordedPose>& recording);
+    Simulator(const Scenario& scenario, Stage stage);
     void checkClearance() const;
 
     Scenario scenario_;
-    RayCaster caster_;
+    Scene scene_;
     Motion motion_;
     ImuRecording imu_;
     Lidar lidar_;

@@ -23,6 +23,7 @@ struct WorldConfig
 {
     WorldType type = WorldType::Hall;
     int seed = 1;               //!< of what is placed at random
+    int moving = 0;             //!< number of people or cars that move
     std::string file;           //!< for MeshFile
     std::string route;          //!< for MeshFile: corners "x y z, x y z, ..." of the way [m]
     double rounding = 1;        //!< for MeshFile: of the corners of the route [m]
@@ -31,11 +32,21 @@ struct WorldConfig
 
 void declare(ConfigSection& section, WorldConfig& config);
 
+/** What may move in a world. */
+struct Traffic
+{
+    bool cars = false;    //!< else people
+    double speed = 1.2;   //!< [m/s]
+    double spacing = 3;   //!< at least, along the route, to the body and to one another [m]
+    double oncoming = 0;  //!< lane to the left of the route for what comes towards; 0 = no room [m]
+};
+
 /** Surfaces, and a closed route that keeps clear of them. World frame: z up. */
 struct World
 {
     Mesh mesh;
     Route route;
+    Traffic traffic;
 };
 
 /** Throws std::runtime_error if a file cannot be used. */

@@ -1,0 +1,213 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "taut/core/Geometry.h"
+#include "taut/rawlog/RawlogSource.h"
+#include "taut/trajectory/Interpolation.h"
+#include "taut/trajectory/PointTruth.h"
+#include "taut/trajectory/TrajectoryFile.h"
+#include "temporary_folder.h"
+
+using namespace taut;
+using ::testing::HasSubstr;
+
+namespace
+{
+struct ProgramRun
+{
+    int exit_code = -1;
+    std::string output;  // of both streams
+};
+
+ProgramRun run(const std::string& arguments)
+{
+    ProgramRun out;
+    FILE* pipe = popen((TAUT_SIMULATE " " + arguments + " 2>&1").c_str(), "r");
+    std::array<char, 4096> buffer{};
+    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
+        out.output.append(buffer.data(), n);
+    const int status = pclose(pipe);
+    if (WIFEXITED(status)) out.exit_code = WEXITSTATUS(status);
+    return out;
+}
+
+std::string contentOf(const std::string& path)
+{
+    std::ostringstream out;
+    out << std::ifstream(path, std::ios::binary).rdbuf();
+    return out.str();
+}
+
+struct Recording
+{
+    std::vector<Scan> scans;
+    ImuSamples samples;
+    std::vector<std::string> warnings;
+};
+
+Recording read(const std::string& path)
+{
+    Recording r;
+    RawlogConfig config;
+    config.path = path;
+    RawlogSource source(config, [&r](const Warning& w) { r.warnings.push_back(w.kind); });
+    while (const auto m = source.next())
+    {
+        if (const auto* scan = std::get_if<Scan>(&*m))
+            r.scans.push_back(*scan);
+        else
+            r.samples.push_back(std::get<ImuSample>(*m));
+    }
+    return r;
+}
+
+class SimulateApp : public testing::Test
+{
+ protected:
+    /** A second of violent motion, unless the arguments say otherwise. */
+    ProgramRun simulate(const std::string& arguments, const std::string& name = "log")
+    {
+        return run(
+            "-c " TAUT_SCENARIOS "/hall_violent.yaml --set rest=0 --set duration=1 -o " +
+            (folder_ / (name + ".rawlog")) + " " + arguments);
+    }
+    std::string file(const std::string& name) const { return folder_ / name; }
+
+    test::TemporaryFolder folder_;
+};
+
+/** Truth of the points against their measured positions and the true trajectory, as a reader has
+ * them. Returns the number of points compared. */
+std::size_t checkPointTruth(const std::string& log, double tolerance)
+{
+    const Recording recording = read(log + ".rawlog");
+    const Trajectory trajectory = readTum(log + ".gt.tum");
+    const TrajectoryInterpolator truth(trajectory);
+    PointTruthReader points(log + ".points");
+    std::size_t compared = 0;
+    for (const Scan& scan : recording.scans)
+    {
+        UndistortedScan undistorted;
+        EXPECT_TRUE(points.next(undistorted));
+        EXPECT_NEAR(static_cast<double>(undistorted.stamp - scan.end), 0, 100);
+        EXPECT_EQ(undistorted.positions.size(), scan.points.size());
+        const auto T_end = truth.at(scan.end);
+        if (!T_end || undistorted.positions.size() != scan.points.size()) continue;
+        for (std::size_t i = 0; i < scan.points.size(); i += 53)
+        {
+            const auto T = truth.at(scan.timeOf(scan.points[i]));
+            if (!T) continue;
+            const Vector3d expected =
+                T_end->inverse() * (*T * scan.T_imu_lidar * scan.points[i].position.cast<double>());
+            EXPECT_LT((undistorted.positions[i].cast<double>() - expected).norm(), tolerance);
+            compared++;
+        }
+    }
+    return compared;
+}
+}  // namespace
+
+TEST_F(SimulateApp, WritesARawlogThatReadsBack)
+{
+    const ProgramRun r = simulate("");
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    EXPECT_THAT(r.output, HasSubstr("200 IMU samples"));
+    const Recording recording = read(file("log.rawlog"));
+    EXPECT_EQ(recording.samples.size(), 200U);
+    ASSERT_EQ(recording.scans.size(), 9U);
+    EXPECT_TRUE(recording.warnings.empty());
+    EXPECT_EQ(recording.scans[0].rings, 16);
+    EXPECT_GT(recording.scans[0].T_imu_lidar.p.norm(), 0.05);
+    EXPECT_EQ(readTum(file("log.gt.tum")).size(), 200U);
+}
+
+TEST_F(SimulateApp, TruthOfPointsIsTheirPlaceAtTheEndOfTheScan)
+{
+    ASSERT_EQ(simulate("--points --quiet --set imu.rate=2000").exit_code, 0);
+    EXPECT_GT(checkPointTruth(file("log"), 2e-4), 3000U);  // interpolation between 0.5 ms
+}
+
+TEST_F(SimulateApp, PacketsHoldTheSamePoints)
+{
+    ASSERT_EQ(simulate("--points --quiet --set imu.rate=2000 --packets").exit_code, 0);
+    EXPECT_GT(checkPointTruth(file("log"), 3e-4), 3000U);
+    ASSERT_EQ(simulate("--quiet", "plain").exit_code, 0);
+    const Recording packets = read(file("log.rawlog")), plain = read(file("plain.rawlog"));
+    ASSERT_EQ(packets.scans.size(), plain.scans.size());
+    for (std::size_t k = 0; k < plain.scans.size(); k++)
+    {
+        const Scan &a = packets.scans[k], &b = plain.scans[k];
+        ASSERT_EQ(a.points.size(), b.points.size());
+        for (std::size_t i = 0; i < a.points.size(); i += 17)
+        {
+            EXPECT_EQ(a.points[i].ring, b.points[i].ring);
+            EXPECT_NEAR(
+                static_cast<double>(a.timeOf(a.points[i]) - b.timeOf(b.points[i])), 0, 1200);
+            // 0.01 degrees at up to 40 m
+            EXPECT_LT((a.points[i].position - b.points[i].position).norm(), 0.009F);
+        }
+    }
+}
+
+TEST_F(SimulateApp, SameSeedSameBits)
+{
+    ASSERT_EQ(simulate("--quiet --points --threads 1 --set duration=0.5", "a").exit_code, 0);
+    ASSERT_EQ(simulate("--quiet --points --threads 3 --set duration=0.5", "b").exit_code, 0);
+    ASSERT_EQ(simulate("--quiet --points --seed 2 --set duration=0.5", "c").exit_code, 0);
+    for (const std::string ending : {".rawlog", ".gt.tum", ".biases.csv", ".points"})
+    {
+        EXPECT_EQ(contentOf(file("a" + ending)), contentOf(file("b" + ending))) << ending;
+        EXPECT_NE(contentOf(file("a" + ending)), contentOf(file("c" + ending))) << ending;
+    }
+}
+
+TEST_F(SimulateApp, FaultsReachTheReader)
+{
+    ASSERT_EQ(
+        simulate("--quiet --points --set faults.nan_points=0.1 --set faults.repeated_stamps=0.2 "
+                 "--set faults.time_jump.at=0.5 --set faults.time_jump.by=-0.25")
+            .exit_code,
+        0);
+    const Recording recording = read(file("log.rawlog"));
+    EXPECT_THAT(recording.warnings, testing::Contains("scan_bad_points"));
+    EXPECT_THAT(recording.warnings, testing::Contains("imu_time"));
+    PointTruthReader points(file("log.points"));
+    UndistortedScan scan;
+    while (points.next(scan))
+    {
+    }
+}
+
+TEST_F(SimulateApp, ReplaysATrajectory)
+{
+    ASSERT_EQ(simulate("--quiet --duration 3", "first").exit_code, 0);
+    const ProgramRun r = simulate(
+        "--quiet --set motion.type=replay --set motion.smoothing=0.02 --set motion.file=" +
+            file("first.gt.tum"),
+        "again");
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    const Trajectory first = readTum(file("first.gt.tum")), again = readTum(file("again.gt.tum"));
+    for (std::size_t i = 20; i < again.size(); i++)
+        EXPECT_LT((again[i].T_world_imu.p - first[i].T_world_imu.p).norm(), 0.03) << i;
+}
+
+TEST_F(SimulateApp, SaysWhatIsWrong)
+{
+    EXPECT_EQ(run("--help").exit_code, 0);
+    EXPECT_EQ(run("").exit_code, 2);
+    EXPECT_EQ(simulate("--set imu.rat=3").exit_code, 2);
+    EXPECT_THAT(simulate("--set imu.rat=3").output, HasSubstr("'imu.rat'"));
+    EXPECT_EQ(simulate("--packets --set lidar.type=OS1-64").exit_code, 2);
+    EXPECT_EQ(run("-c /nowhere.yaml -o /tmp/x.rawlog").exit_code, 1);
+    EXPECT_EQ(
+        run("-c " TAUT_SCENARIOS "/hall_violent.yaml --duration 1 -o /nowhere/x.rawlog").exit_code,
+        1);
+    EXPECT_EQ(simulate("--set motion.height=0.1").exit_code, 1);
+}
