@@ -1,14 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "motions.h"
+#include "program.h"
 #include "taut/trajectory/PointTruth.h"
 #include "taut/trajectory/TrajectoryFile.h"
 #include "temporary_file.h"
@@ -18,22 +16,9 @@ using ::testing::HasSubstr;
 
 namespace
 {
-struct ProgramRun
+test::ProgramRun run(const std::string& arguments)
 {
-    int exit_code = -1;
-    std::string output;  // of both streams
-};
-
-ProgramRun run(const std::string& arguments)
-{
-    ProgramRun out;
-    FILE* pipe = popen((TAUT_EVALUATE " " + arguments + " 2>&1").c_str(), "r");
-    std::array<char, 4096> buffer{};
-    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
-        out.output.append(buffer.data(), n);
-    const int status = pclose(pipe);
-    if (WIFEXITED(status)) out.exit_code = WEXITSTATUS(status);
-    return out;
+    return test::runProgram(TAUT_EVALUATE, arguments);
 }
 
 /** Truth at 100 Hz, and an estimate at 10 Hz that is off by 3 cm and seen from another world. */
@@ -58,7 +43,7 @@ class EvaluateApp : public testing::Test
 
 TEST_F(EvaluateApp, PrintsATable)
 {
-    const ProgramRun r = run(files());
+    const test::ProgramRun r = run(files());
     EXPECT_EQ(r.exit_code, 0);
     EXPECT_THAT(r.output, HasSubstr("coverage   100.0 % of 20.000 s"));
     EXPECT_THAT(r.output, HasSubstr("ATE position"));
@@ -67,7 +52,7 @@ TEST_F(EvaluateApp, PrintsATable)
 
 TEST_F(EvaluateApp, WritesJson)
 {
-    const ProgramRun r = run(files() + " --json --align yaw --rpe-seconds 2 --rpe-metres 3");
+    const test::ProgramRun r = run(files() + " --json --align yaw --rpe-seconds 2 --rpe-metres 3");
     ASSERT_EQ(r.exit_code, 0);
     const auto json = nlohmann::json::parse(r.output);
     EXPECT_EQ(json["paired_poses"], 201);
@@ -88,7 +73,7 @@ TEST_F(EvaluateApp, ScoresPoints)
         writer.close();
     }
     const std::string truth = " --points-truth " + folder_ / "truth.points";
-    const ProgramRun r =
+    const test::ProgramRun r =
         run(files() + " --json" + truth + " --points " + folder_ / "estimate.points");
     ASSERT_EQ(r.exit_code, 0) << r.output;
     EXPECT_EQ(nlohmann::json::parse(r.output)["points"]["rmse_m"], 0.25);
@@ -98,7 +83,7 @@ TEST_F(EvaluateApp, ScoresPoints)
 TEST_F(EvaluateApp, RefusesWithExitCode1)
 {
     writeTum(estimate_, test::lissajous(5, 10));
-    const ProgramRun r = run(files());
+    const test::ProgramRun r = run(files());
     EXPECT_EQ(r.exit_code, 1);
     EXPECT_THAT(r.output, HasSubstr("refused: the estimate covers 25.0 %"));
     EXPECT_EQ(run(files() + " --min-coverage 0.2").exit_code, 0);
@@ -107,7 +92,7 @@ TEST_F(EvaluateApp, RefusesWithExitCode1)
 TEST_F(EvaluateApp, FailsWithExitCode1)
 {
     std::ofstream(estimate_) << "1 2 3\n";
-    const ProgramRun r = run(files());
+    const test::ProgramRun r = run(files());
     EXPECT_EQ(r.exit_code, 1);
     EXPECT_THAT(r.output, HasSubstr("estimate.tum:1: 8 columns expected, found 3"));
     EXPECT_EQ(run("--truth /none --estimate /none").exit_code, 1);
@@ -130,7 +115,7 @@ TEST_F(EvaluateApp, DrawsPlots)
     if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "gnuplot is absent";
     for (const std::string format : {"svg", "png"})
     {
-        const ProgramRun r =
+        const test::ProgramRun r =
             run(files() + " --plot '" + folder_ / "a plot" + "' --plot-format " + format);
         ASSERT_EQ(r.exit_code, 0) << r.output;
         for (const char* name : {"trajectory.", "position_error.", "rotation_error."})
@@ -140,7 +125,7 @@ TEST_F(EvaluateApp, DrawsPlots)
 
 TEST_F(EvaluateApp, SaysWhenItCannotDraw)
 {
-    const ProgramRun r = run(files() + " --plot " + truth_);
+    const test::ProgramRun r = run(files() + " --plot " + truth_);
     EXPECT_EQ(r.exit_code, 1);
     EXPECT_THAT(r.output, HasSubstr("ATE position")) << "the scores come all the same";
 }

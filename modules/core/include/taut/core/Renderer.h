@@ -35,6 +35,10 @@ constexpr const char* nameOf(View view)
     return view == View::Top ? "top" : view == View::Oblique ? "oblique" : "follow";
 }
 
+/** What every renderer asks of a scene. Throws std::runtime_error if there is neither a finite
+ * point nor a trajectory, if a pose is not finite, or if there is no trajectory to follow. */
+void requireDrawable(const RenderScene& scene, View view);
+
 /** Plug point: makes an image file of a scene. */
 class Renderer : public mrpt::rtti::CObject
 {
@@ -42,8 +46,8 @@ class Renderer : public mrpt::rtti::CObject
  public:
     virtual void configure(ConfigSection& section) = 0;
 
-    /** Writes a PNG. Throws std::runtime_error with the cause if it cannot: nothing to show, a pose
-     * that is not finite, no trajectory to follow, a file that cannot be written. */
+    /** Writes a PNG. Throws std::runtime_error with the cause if it cannot: requireDrawable(), or a
+     * file that cannot be written. */
     virtual void render(const RenderScene& scene, View view, const std::string& png_path) = 0;
 };
 }  // namespace taut
