@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 namespace taut
 {
@@ -31,14 +32,21 @@ inline bool parseCommandLine(TCLAP::CmdLine& cmd, int argc, char** argv)
     return cmd.parse(argc, argv);
 }
 
-/** Calls `body` and gives the exit code: 0 done, 1 failed, 2 bad usage. */
+/** Calls `body` and gives the exit code: what it returns (0 if nothing), 1 failed, 2 bad usage. */
 template <class Body>
 int runProgram(const std::string& name, Body body)
 {
     try
     {
-        body();
-        return 0;
+        if constexpr (std::is_void_v<decltype(body())>)
+        {
+            body();
+            return 0;
+        }
+        else
+        {
+            return body();
+        }
     }
     catch (const UsageError& e)
     {

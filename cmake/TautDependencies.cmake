@@ -15,6 +15,7 @@ find_program(GNUPLOT_PROGRAM gnuplot) # gnuplot-nox 5.4.4, optional: taut-evalua
 if(NOT GNUPLOT_PROGRAM)
   message(STATUS "gnuplot (Debian: gnuplot-nox) is absent: taut-evaluate --plot will not draw")
 endif()
+find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto) # libssl-dev 3.0
 find_library(OSMESA_LIBRARY OSMesa REQUIRED) # libosmesa6-dev 22.3.6
 find_path(OSMESA_INCLUDE_DIR GL/osmesa.h REQUIRED)
 find_package(embree 3 QUIET) # libembree-dev 3.13.5; optional: simulation

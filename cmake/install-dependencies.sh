@@ -6,7 +6,7 @@ packages=(
   libeigen3-dev libmrpt-maps-dev libmrpt-opengl-dev libmrpt-tclap-dev
   zlib1g-dev libnlopt-cxx-dev libnlopt-dev liboctomap-dev libosmesa6-dev libnanoflann-dev robin-map-dev
   libembree-dev
-  libgtest-dev libgmock-dev libbenchmark-dev nlohmann-json3-dev gnuplot-nox
+  libgtest-dev libgmock-dev libbenchmark-dev nlohmann-json3-dev libssl-dev gnuplot-nox
 )
 missing=()
 for p in "${packages[@]}"; do

@@ -134,9 +134,9 @@ void Odometry::estimate(
     result.previous = problem.previous();
 
     const NavState::Matrix lidar_information = problem.lidarInformation();
-    result.min_translation =
+    result.translation_information =
         eigenvaluesOf(lidar_information.block<3, 3>(NavState::kPosition, NavState::kPosition));
-    result.min_rotation =
+    result.rotation_information =
         eigenvaluesOf(lidar_information.block<3, 3>(NavState::kRotation, NavState::kRotation));
 
     // The posterior of x_k is the prior of the next scan.

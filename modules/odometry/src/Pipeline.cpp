@@ -16,6 +16,10 @@ std::string format(const char* text, double value)
 
 constexpr double kImuGap = 0.1;    // [s] worth a warning
 constexpr double kLidarGap = 0.5;  // [s]
+
+// Scans that a start in motion looks at, and how often.
+constexpr std::size_t kBootstrapScans = 4;
+constexpr int kBootstrapPasses = 4;
 }  // namespace
 
 Pipeline::Pipeline(
@@ -111,14 +115,44 @@ void Pipeline::processReady(bool all)
         initialization_->estimate.state.t = waiting_.front().stamp - 1;
         odometry_.start(*initialization_, false);
     }
-    while (!waiting_.empty())
+    if (!initialization_->at_rest && !bootstrapped_)
     {
-        const Time end = waiting_.front().end;
-        const bool imu_covers = !withImu() || (!imu_.empty() && imu_.back().t >= end);
-        if (!imu_covers && !all) return;
+        if (readyScans() < kBootstrapScans && !all) return;
+        bootstrap();
+    }
+    for (std::size_t ready = all ? waiting_.size() : readyScans(); ready > 0; ready--)
+    {
         process(waiting_.front());
         waiting_.pop_front();
     }
+}
+
+std::size_t Pipeline::readyScans() const
+{
+    if (!withImu()) return waiting_.size();
+    std::size_t n = 0;
+    while (n < waiting_.size() && !imu_.empty() && imu_.back().t >= waiting_[n].end) n++;
+    return n;
+}
+
+void Pipeline::bootstrap()
+{
+    // In motion, the first scan is undistorted with an unknown velocity and makes a wrong map. The
+    // scans after it tell the velocity: start again with that one, until map and velocity agree.
+    bootstrapped_ = true;
+    Initialization start = *initialization_;
+    for (int pass = 0; pass < kBootstrapPasses; pass++)
+    {
+        odometry_.start(start, withImu());
+        std::vector<ScanResult> results;
+        for (std::size_t i = 0; i < std::min(waiting_.size(), kBootstrapScans); i++)
+            if (waiting_[i].end > odometry_.time())
+                results.push_back(odometry_.process(waiting_[i], imu_));
+        if (results.size() < 2) break;
+        NavState& x = start.estimate.state;
+        x.v_world += results[1].previous.v_world - results[0].estimate.state.v_world;
+    }
+    odometry_.start(start, withImu());
 }
 
 void Pipeline::process(const Scan& scan)

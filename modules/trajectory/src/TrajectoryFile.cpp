@@ -260,14 +260,20 @@ Trajectory readKitti(const std::string& path, const std::string& times_path)
     return out;
 }
 
+std::string kittiLine(const Pose& pose)
+{
+    std::string line;
+    for (int i = 0; i < 12; i++)
+        line += formatNumber(i % 4 < 3 ? pose.R(i / 4, i % 4) : pose.p[i / 4], 12) +
+                (i < 11 ? " " : "");
+    return line;
+}
+
 void writeKitti(const std::string& path, const std::vector<Pose>& poses)
 {
     std::ofstream file(path);
     if (!file) throw std::runtime_error("cannot write '" + path + "'");
-    for (const Pose& pose : poses)
-        for (int i = 0; i < 12; i++)
-            file << formatNumber(i % 4 < 3 ? pose.R(i / 4, i % 4) : pose.p[i / 4], 12)
-                 << (i < 11 ? ' ' : '\n');
+    for (const Pose& pose : poses) file << kittiLine(pose) << '\n';
     file.close();
     if (!file) throw std::runtime_error("cannot write '" + path + "' to its end");
 }

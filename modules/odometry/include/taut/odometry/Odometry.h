@@ -27,8 +27,9 @@ struct ScanResult
     bool converged = true;
     bool lidar_used = false;  //!< false: too few correspondences; the IMU alone moved the state
     double cost = 0, balance = 1;
-    std::array<double, 3> min_translation{};  //!< eigenvalues of the LiDAR block, ascending [1/m^2]
-    std::array<double, 3> min_rotation{};     //!< the same of the rotation [1/rad^2]
+    std::array<double, 3>
+        translation_information{};  //!< eigenvalues of the LiDAR block, ascending [1/m^2]
+    std::array<double, 3> rotation_information{};  //!< the same of the rotation [1/rad^2]
     StageTimes times;
 };
 

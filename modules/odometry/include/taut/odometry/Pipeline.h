@@ -38,6 +38,8 @@ class Pipeline
     void begin(const Initialization& initialization);
     void beginWithoutImu();
     void processReady(bool all);
+    std::size_t readyScans() const;
+    void bootstrap();
     void process(const Scan& scan);
 
     const OdometryConfig& config_;
@@ -47,6 +49,7 @@ class Pipeline
     Initializer initializer_;
     std::optional<Initialization> initialization_;
     Mode mode_ = Mode::Undecided;
+    bool bootstrapped_ = false;
     std::deque<Scan> waiting_;
     ImuSamples imu_;
     Time last_imu_ = 0;

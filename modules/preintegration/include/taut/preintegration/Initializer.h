@@ -19,7 +19,7 @@ enum class OnMotion
 struct InitializationConfig
 {
     double rest_duration = 10.0;  //!< [s] rest that is waited for (paper, section II-D)
-    double min_rest = 1.0;        //!< [s] a shorter rest than asked for is used down to this
+    double min_rest = 0.5;        //!< [s] a shorter rest than asked for is used down to this
     OnMotion on_motion = OnMotion::Start;
 
     // Rest: the means over windows agree. Vibration does not disturb means.
@@ -35,7 +35,7 @@ struct InitializationConfig
 
     // Prior of a start in motion, one standard deviation.
     double moving_tilt_sigma = 0.15;     //!< [rad]
-    double moving_velocity_sigma = 5.0;  //!< [m/s]
+    double moving_velocity_sigma = 2.0;  //!< [m/s]
 
     void declare(ConfigSection& section);
 };

@@ -57,6 +57,7 @@ std::vector<Pose> readKitti(const std::string& path);
  */
 Trajectory readKitti(const std::string& path, const std::string& times_path);
 
-/** Numbers with 12 decimals. */
+/** One line of a KITTI file, without its end: numbers with 12 decimals. */
+std::string kittiLine(const Pose& pose);
 void writeKitti(const std::string& path, const std::vector<Pose>& poses);
 }  // namespace taut

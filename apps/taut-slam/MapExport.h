@@ -1,0 +1,60 @@
+#pragma once
+
+#include <tsl/robin_set.h>
+
+#include <string>
+#include <vector>
+
+#include "taut/core/Config.h"
+#include "taut/core/NavState.h"
+#include "taut/files/PlyFile.h"
+#include "taut/map/OccupancyWorker.h"
+
+namespace taut
+{
+struct MapExportConfig
+{
+    double point_spacing = 0.05;  //!< [m] one point of map.ply a voxel of this size
+    double key_distance = 1.0;    //!< [m] or
+    double key_angle = 0.35;      //!< [rad] or
+    double key_time = 5.0;        //!< [s] from one key scan of the occupancy map to the next
+    int key_points = 3000;        //!< rays of a key scan
+    OccupancyMap::Config occupancy;
+
+    void declare(ConfigSection& section);
+};
+
+/** Writes the map while the estimation runs: map.ply point by point, and the occupancy octree from
+ * key scans in a thread of its own. Keeps a bounded sample of the points for the pictures. */
+class MapExport
+{
+ public:
+    MapExport(const MapExportConfig& config, const std::string& folder);
+
+    void add(const NavState& state, const std::vector<Vector3d>& points_world);
+
+    /** Completes map.ply, map.ot and map.bt. */
+    void finish(const WarningSink& warn);
+
+    /** An even sample of the points of map.ply. */
+    const std::vector<Eigen::Vector3f>& sample() const { return sample_; }
+    std::size_t points() const { return ply_.size(); }
+    std::size_t keyScans() const { return key_scans_; }
+    double occupancyResolution() const { return occupancy_resolution_; }
+
+ private:
+    void addPoint(const Vector3d& p);
+    bool isKey(const NavState& state) const;
+
+    MapExportConfig config_;
+    std::string folder_;
+    PlyPointWriter ply_;
+    tsl::robin_set<std::uint64_t> voxels_;
+    std::vector<Eigen::Vector3f> sample_;
+    std::size_t sample_stride_ = 1;
+    OccupancyWorker occupancy_;
+    NavState last_key_;
+    std::size_t key_scans_ = 0;
+    double occupancy_resolution_ = 0;
+};
+}  // namespace taut

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "taut/core/WarningLog.h"
+#include "taut/odometry/Odometry.h"
+#include "taut/rawlog/RawlogSource.h"
+
+namespace taut
+{
+/** What metrics.json tells of a run. */
+class Metrics
+{
+ public:
+    explicit Metrics(std::string input);
+
+    void add(const ScanResult& result);
+
+    struct Summary
+    {
+        RawlogProgress log;
+        bool incomplete = false, interrupted = false;
+        bool with_imu = true;
+        double rest_seconds = 0;  //!< used by the initialisation
+        double length = 0;        //!< [m]
+        std::size_t map_points = 0, map_cells = 0, key_scans = 0;
+        double occupancy_resolution = 0;
+        std::string mode, method_file;
+        int threads = 0;
+        double wall_seconds = 0;  //!< of the processing, without pictures
+    };
+    /** JSON text. Hashes the input: reads it once. */
+    std::string json(const Summary& summary, const WarningLog& warnings) const;
+
+    int scans() const { return scans_; }
+    double meanMilliseconds() const { return scans_ ? total_ms_ / scans_ : 0; }
+    double duration() const { return toSeconds(last_ - first_); }
+
+ private:
+    std::string input_;
+    int scans_ = 0, unmatched_ = 0, not_converged_ = 0;
+    double total_ms_ = 0, max_ms_ = 0, iterations_ = 0, correspondences_ = 0;
+    Time first_ = 0, last_ = 0;
+    std::vector<std::size_t> memory_;  //!< resident memory [kB], every so many scans
+    std::size_t memory_stride_ = 1;
+};
+
+/** Resident memory of this process [kB]: now, or the highest so far. */
+std::size_t residentMemory(bool peak);
+}  // namespace taut

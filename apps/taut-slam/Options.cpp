@@ -1,0 +1,97 @@
+#include "Options.h"
+
+#include <map>
+#include <thread>
+
+#include "../CommandLine.h"
+
+namespace taut
+{
+namespace
+{
+int verbosityOf(const std::string& level)
+{
+    const std::map<std::string, int> levels{{"ERROR", 0}, {"WARN", 1}, {"INFO", 2}, {"DEBUG", 3}};
+    const auto it = levels.find(level);
+    if (it == levels.end())
+        throw UsageError("-v: '" + level + "' is none of ERROR, WARN, INFO, DEBUG");
+    return it->second;
+}
+}  // namespace
+
+bool parseOptions(int argc, char** argv, Options& o)
+{
+    TCLAP::CmdLine cmd(
+        "taut-slam: LiDAR-IMU SLAM that undistorts every point in every iteration. Reads an MRPT "
+        "rawlog with a 3D LiDAR and an IMU; writes the trajectory, the map and pictures of both "
+        "into "
+        "a folder. Exit codes: 0 done, 1 failed, 2 bad usage, 3 done, but part of the log could "
+        "not be "
+        "used (the warnings and metrics.json say which and why).",
+        ' ', TAUT_VERSION);
+    TCLAP::ValueArg<std::string> input(
+        "i", "input", "Rawlog to process (observations or sensory frames, gz or not)", true, "",
+        "LOG.rawlog", cmd);
+    TCLAP::ValueArg<std::string> output(
+        "o", "output", "Folder for the results", true, "", "OUT/", cmd);
+    TCLAP::ValueArg<std::string> config(
+        "c", "config", "Method file: the choices of the method (default: config/default.yaml)",
+        false, "", "METHOD.yaml", cmd);
+    TCLAP::MultiArg<std::string> set(
+        "s", "set", "Override a key of the method file, as estimation.undistortion=imu", false,
+        "SECTION.KEY=VALUE", cmd);
+    TCLAP::ValueArg<std::string> rig(
+        "r", "rig", "Rig file: poses, noise and clocks of the sensors, over those in the log",
+        false, "", "RIG.yaml", cmd);
+    TCLAP::ValueArg<std::string> lidar(
+        "", "lidar", "Sensor label of the LiDAR, a regular expression (default: the only one)",
+        false, "", "REGEX", cmd);
+    TCLAP::ValueArg<std::string> imu(
+        "", "imu", "Sensor label of the IMU, a regular expression (default: the only one)", false,
+        "", "REGEX", cmd);
+    TCLAP::ValueArg<double> from(
+        "", "from-time", "Leave out what is earlier: seconds since the start of the log", false, 0,
+        "SECONDS", cmd);
+    TCLAP::ValueArg<double> to(
+        "", "to-time", "End there: seconds since the start of the log", false,
+        std::numeric_limits<double>::infinity(), "SECONDS", cmd);
+    TCLAP::ValueArg<int> first(
+        "", "only-first-n", "End after that many scans (0: all)", false, 0, "N", cmd);
+    TCLAP::MultiArg<std::string> plugins(
+        "p", "plugin", "Shared library with further classes for the plug points", false,
+        "PLUGIN.so", cmd);
+    TCLAP::ValueArg<int> threads(
+        "", "threads", "Threads of the estimation (0: all processors); the result is the same",
+        false, 0, "N", cmd);
+    TCLAP::SwitchArg overwrite("w", "overwrite", "Write into a folder that has results", cmd);
+    TCLAP::SwitchArg pictures("", "no-pictures", "Do not render snapshots", cmd);
+    TCLAP::SwitchArg show("", "show-config", "Print the configuration in effect and end", cmd);
+    TCLAP::SwitchArg quiet("q", "quiet", "Errors only: as -v ERROR", cmd);
+    TCLAP::ValueArg<std::string> level(
+        "v", "verbosity", "ERROR, WARN, INFO or DEBUG (default INFO)", false, "INFO", "LEVEL", cmd);
+    if (!parseCommandLine(cmd, argc, argv)) return false;
+
+    o.input = input.getValue();
+    o.output = output.getValue();
+    o.config = config.getValue();
+    o.settings = set.getValue();
+    o.rig = rig.getValue();
+    o.lidar_label = lidar.getValue();
+    o.imu_label = imu.getValue();
+    o.from_time = from.getValue();
+    o.to_time = to.getValue();
+    o.only_first_n = first.getValue();
+    o.plugins = plugins.getValue();
+    o.threads = threads.getValue();
+    o.overwrite = overwrite.getValue();
+    o.no_pictures = pictures.getValue();
+    o.show_config = show.getValue();
+    o.verbosity = quiet.getValue() ? 0 : verbosityOf(level.getValue());
+    if (o.from_time < 0 || !(o.to_time > o.from_time))
+        throw UsageError("--to-time must be later than --from-time, and neither negative");
+    if (o.only_first_n < 0) throw UsageError("--only-first-n must not be negative");
+    if (o.threads < 0 || o.threads > 256) throw UsageError("--threads must be 0 to 256");
+    if (o.threads == 0) o.threads = static_cast<int>(std::thread::hardware_concurrency());
+    return true;
+}
+}  // namespace taut

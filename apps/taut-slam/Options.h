@@ -1,0 +1,28 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace taut
+{
+/** What the command line says. */
+struct Options
+{
+    std::string input, output;
+    std::string config;                 //!< method file; empty: config/default.yaml
+    std::vector<std::string> settings;  //!< section.key=value, over the method file
+    std::string rig;
+    std::string lidar_label, imu_label;  //!< regular expressions; empty: the only sensor there
+    double from_time = 0,
+           to_time = std::numeric_limits<double>::infinity();  //!< [s] from the start
+    int only_first_n = 0;                                      //!< scans; 0: all
+    std::vector<std::string> plugins;
+    int threads = 0;  //!< 0: as many as the machine has
+    bool overwrite = false, no_pictures = false, show_config = false;
+    int verbosity = 2;  //!< 0 errors, 1 warnings, 2 progress, 3 every scan
+};
+
+/** False if that was all there was to do (--help, --version). Throws UsageError. */
+bool parseOptions(int argc, char** argv, Options& options);
+}  // namespace taut

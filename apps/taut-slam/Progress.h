@@ -1,0 +1,27 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace taut
+{
+/** Tells how far the run is, on standard error: one line that renews itself on a terminal, plain
+ * lines a few seconds apart elsewhere. */
+class Progress
+{
+ public:
+    explicit Progress(bool show);
+    ~Progress();
+
+    /** `fraction` of the log that is read; `scans` and seconds of the recording that are done. */
+    void update(double fraction, int scans, double seconds_done);
+
+    /** Takes the line off the terminal, so that something else can be printed. */
+    void clear();
+
+ private:
+    using Clock = std::chrono::steady_clock;
+    bool show_, terminal_, drawn_ = false;
+    Clock::time_point start_ = Clock::now(), last_ = start_;
+};
+}  // namespace taut

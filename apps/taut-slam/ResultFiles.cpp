@@ -1,0 +1,102 @@
+#include "ResultFiles.h"
+
+#include <stdexcept>
+
+namespace taut
+{
+namespace
+{
+constexpr std::size_t kMaxSample = 100'000;
+
+std::ofstream open(const std::string& path)
+{
+    std::ofstream file(path);
+    if (!file) throw std::runtime_error("cannot write '" + path + "'");
+    file.precision(9);
+    return file;
+}
+
+void close(std::ofstream& file, const std::string& name)
+{
+    file.close();
+    if (!file) throw std::runtime_error("cannot write '" + name + "' to its end");
+}
+
+std::ostream& operator<<(std::ostream& out, const Vector3d& v)
+{
+    return out << v.x() << ',' << v.y() << ',' << v.z();
+}
+}  // namespace
+
+ResultFiles::ResultFiles(const std::string& folder, bool refined)
+    : folder_(folder),
+      refined_(refined),
+      tum_(folder + "/trajectory.tum"),
+      kitti_(open(folder + "/trajectory_kitti.txt")),
+      states_(open(folder + "/states.csv")),
+      timing_(open(folder + "/timing.csv"))
+{
+    states_ << "t,vx,vy,vz,ba_x,ba_y,ba_z,bg_x,bg_y,bg_z";
+    for (const char* entry : {"p", "v", "theta", "ba", "bg"})
+        for (const char* axis : {"x", "y", "z"}) states_ << ",var_" << entry << '_' << axis;
+    states_ << ",iterations,features,correspondences,cost,balance,converged,lidar_used,"
+               "translation_information_1,translation_information_2,translation_information_3,"
+               "rotation_information_1,rotation_information_2,rotation_information_3\n";
+    timing_ << "t,points,transform_ms,preintegrate_ms,extract_ms,match_ms,solve_ms,insert_ms,"
+               "total_ms\n";
+}
+
+void ResultFiles::add(const ScanResult& result)
+{
+    const NavState& x = result.estimate.state;
+    if (pending_)
+        writePose(pending_->t, refined_ ? result.previous.T_world_imu : pending_->T_world_imu);
+    pending_ = StampedPose{x.t, x.T_world_imu};
+    writeState(result);
+    writeTiming(result);
+}
+
+void ResultFiles::writePose(Time t, const Pose& pose)
+{
+    tum_.write({t, pose});
+    kitti_ << kittiLine(pose) << '\n';
+    if (last_) length_ += (pose.p - last_->p).norm();
+    last_ = pose;
+    if (static_cast<std::size_t>(poses_) % sample_stride_ == 0) sample_.push_back(pose);
+    poses_++;
+    if (sample_.size() < kMaxSample) return;
+    for (std::size_t i = 0; 2 * i < sample_.size(); i++) sample_[i] = sample_[2 * i];
+    sample_.resize((sample_.size() + 1) / 2);
+    sample_stride_ *= 2;
+}
+
+void ResultFiles::writeState(const ScanResult& r)
+{
+    const NavState& x = r.estimate.state;
+    states_ << formatSeconds(x.t) << ',' << x.v_world << ',' << x.bias_accel << ',' << x.bias_gyro;
+    for (int i = 0; i < NavState::kSize; i++) states_ << ',' << r.estimate.covariance(i, i);
+    states_ << ',' << r.iterations << ',' << r.features << ',' << r.correspondences << ',' << r.cost
+            << ',' << r.balance << ',' << r.converged << ',' << r.lidar_used;
+    for (const double e : r.translation_information) states_ << ',' << e;
+    for (const double e : r.rotation_information) states_ << ',' << e;
+    states_ << '\n';
+}
+
+void ResultFiles::writeTiming(const ScanResult& r)
+{
+    const StageTimes& t = r.times;
+    timing_ << formatSeconds(r.estimate.state.t) << ',' << r.scan_points << ',' << t.transform
+            << ',' << t.preintegrate << ',' << t.extract << ',' << t.match << ',' << t.solve << ','
+            << t.insert << ',' << t.total() << '\n';
+}
+
+void ResultFiles::close()
+{
+    if (pending_) writePose(pending_->t, pending_->T_world_imu);
+    pending_.reset();
+    tum_.close();
+    taut::close(kitti_, folder_ + "/trajectory_kitti.txt");
+    taut::close(states_, folder_ + "/states.csv");
+    taut::close(timing_, folder_ + "/timing.csv");
+}
+}  // namespace taut

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <mrpt/containers/yaml.h>
+
+#include <string>
+#include <vector>
+
+namespace taut
+{
+/** Path of a method file: as given, or config/default.yaml of the installation or the source tree.
+ * Throws std::runtime_error if there is none. */
+std::string findMethodFile(const std::string& given);
+
+/** The file with the settings "section.key=value" laid over it. Throws ConfigError. */
+mrpt::containers::yaml readMethodFile(
+    const std::string& path, const std::vector<std::string>& settings);
+}  // namespace taut
