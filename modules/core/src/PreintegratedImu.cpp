@@ -50,7 +50,9 @@ MotionDelta correctedForBias(
     const MotionDelta& delta, const Vector3d& dbias_accel, const Vector3d& dbias_gyro)
 {
     MotionDelta c = delta;
-    c.gamma = delta.gamma * expSO3(delta.dtheta_dbg * dbias_gyro);
+    const Vector3d turn = delta.dtheta_dbg * dbias_gyro;
+    c.gamma = delta.gamma * expSO3(turn);
+    c.dtheta_dbg = rightJacobianSO3(turn) * delta.dtheta_dbg;  // there, not where it came from
     c.beta += delta.dbeta_dba * dbias_accel + delta.dbeta_dbg * dbias_gyro;
     c.alpha += delta.dalpha_dba * dbias_accel + delta.dalpha_dbg * dbias_gyro;
     return c;
