@@ -105,11 +105,15 @@ bool Initializer::add(const ImuSample& sample)
 bool Initializer::finish()
 {
     if (result_) return true;
-    if (current_.count > 0) closeWindow();
-    if (!result_ && rest_.count > 0 && toSeconds(rest_.end - rest_.begin) >= config_.min_rest)
+    // The window cut short by the end says little, its mean is noisy; but it may be all there is.
+    if (current_.count > 0 && first_.count == 0) closeWindow();
+    if (result_ || first_.count == 0) return result_.has_value();
+    const double rested = rest_.count > 0 ? toSeconds(rest_.end - rest_.begin) : 0;
+    if (rested >= config_.min_rest)
         result_ = fromRest();
-    if (!result_ && first_.count > 0) result_ = fromMotion();
-    return result_.has_value();
+    else
+        startInMotion(first_.begin, rested);
+    return true;
 }
 
 void Initializer::closeWindow()
@@ -157,14 +161,7 @@ void Initializer::onMotion(Time t)
     rest_ = {};
     if (config_.on_motion == OnMotion::Start)
     {
-        result_ = fromMotion();
-        if (warn_)
-            warn_(
-                {t, "no_rest",
-                 format(
-                     "no rest at the start (%.1f s, needs at least %.1f s): starting in motion, "
-                     "gravity and biases are known poorly at first",
-                     rested, config_.min_rest)});
+        startInMotion(t, rested);
     }
     else if (!waiting_reported_)
     {
@@ -176,6 +173,18 @@ void Initializer::onMotion(Time t)
                      "the body moves (rested for %.1f s): waiting for a rest of %.1f s", rested,
                      config_.min_rest)});
     }
+}
+
+void Initializer::startInMotion(Time t, double rested)
+{
+    result_ = fromMotion();
+    if (warn_)
+        warn_(
+            {t, "no_rest",
+             format(
+                 "no rest at the start (%.1f s, needs at least %.1f s): starting in motion, "
+                 "gravity and biases are known poorly at first",
+                 rested, config_.min_rest)});
 }
 
 Initialization Initializer::fromRest() const

@@ -84,6 +84,7 @@ class Initializer
     bool continuesRest(const Window& w) const;
     bool plausibleRest(const Window& w) const;
     void onMotion(Time t);
+    void startInMotion(Time t, double rested);
     Initialization fromRest() const;
     Initialization fromMotion() const;
 
