@@ -1,0 +1,254 @@
+#include "taut/factors/LidarFactor.h"
+
+#include <gtest/gtest.h>
+
+#include "steady_turn.h"
+#include "taut/preintegration/MidpointPreintegrator.h"
+
+using namespace taut;
+using namespace taut::test;
+
+namespace
+{
+constexpr Duration kMillisecond = 1'000'000;
+constexpr Time kEnd = 100 * kMillisecond;
+constexpr int kSize = 2 * NavState::kSize;
+
+/** Features of one sweep, each with a plane or a line near it. */
+class LidarFactorTest : public ::testing::Test
+{
+ protected:
+    LidarFactorTest()
+    {
+        const ImuSamples samples = body.samples(0, kEnd, 2 * kMillisecond);
+        PreintegrationRequest request;
+        request.end = kEnd;
+        request.samples = &samples;
+        request.previous = body.at(0);
+        imu = MidpointPreintegrator().integrate(request);
+        noise.sigma = 0.02;
+        previous = disturbed(body.at(0), random, 0.01);
+        current = disturbed(body.at(kEnd), random, 0.01);
+    }
+
+    void addPoints(int count)
+    {
+        features.stamp = 0;
+        for (int i = 0; i < count; i++)
+        {
+            const Vector3d x = random.vector(8);
+            const auto offset = static_cast<std::int32_t>((i + 1) * kEnd / count);
+            features.points.push_back({x.cast<float>(), offset, FeatureKind::Any});
+            Correspondence c;
+            c.surface = i % 7 == 3 ? Surface::None : i % 3 == 0 ? Surface::Line : Surface::Plane;
+            c.direction = random.vector(1).normalized();
+            c.point = body.at(offset).T_world_imu * x + random.vector(0.05);
+            c.sigma = 0.01 + 0.001 * (i % 5);
+            correspondences.push_back(c);
+        }
+    }
+
+    SweepPath pathOf(Undistortion mode) const
+    {
+        SweepPath path(mode, imu, body.at(0), body.at(kEnd));
+        path.setStates(previous, current);
+        return path;
+    }
+
+    LidarFactor factor(Executor& executor) const
+    {
+        LidarFactor f(features, noise, executor);
+        f.setCorrespondences(correspondences);
+        return f;
+    }
+
+    SteadyTurn body;
+    Random random{1};
+    PreintegratedImu imu;
+    NavState previous, current;
+    Features features;
+    std::vector<Correspondence> correspondences;
+    LidarNoiseConfig noise;
+    Executor single{1};
+};
+
+struct Linearised
+{
+    ProblemMatrix H = ProblemMatrix::Zero(kSize, kSize);
+    ProblemVector g = ProblemVector::Zero(kSize);
+    double cost = 0;
+
+    Linearised(const LidarFactor& factor, const SweepPath& path, double balance)
+    {
+        cost = factor.linearize(path, balance, H, g);
+    }
+};
+}  // namespace
+
+TEST_F(LidarFactorTest, GradientIsThatOfTheCost)
+{
+    addPoints(700);
+    const LidarFactor lidar = factor(single);
+    for (const Undistortion mode :
+         {Undistortion::None, Undistortion::Imu, Undistortion::IteratedImu, Undistortion::Iterated,
+          Undistortion::Bridge})
+        for (const Kernel kernel : {Kernel::None, Kernel::Huber, Kernel::Cauchy})
+        {
+            noise.kernel.kind = kernel;
+            SweepPath path = pathOf(mode);
+            const Linearised at(lidar, path, 1.5);
+            EXPECT_NEAR(at.cost, lidar.cost(path, 1.5), 1e-9 * at.cost);
+            const Eigen::MatrixXd numeric = numericJacobian(
+                [&](const Eigen::VectorXd& d) -> Eigen::VectorXd
+                {
+                    path.setStates(
+                        previous.retract(d.head<NavState::kSize>()),
+                        current.retract(d.tail<NavState::kSize>()));
+                    return Eigen::VectorXd::Constant(1, lidar.cost(path, 1.5));
+                },
+                kSize, 1e-6);
+            // The path's derivative is interpolated between nodes: exact to a part in a thousand.
+            const Eigen::VectorXd error = at.g - numeric.transpose();
+            EXPECT_LT(error.norm(), 2e-3 * at.g.norm()) << nameOf(mode);
+        }
+}
+
+TEST_F(LidarFactorTest, HessianIsThatOfTheCostWhereResidualsVanish)
+{
+    addPoints(300);
+    noise.kernel.kind = Kernel::None;
+    SweepPath path = pathOf(Undistortion::Bridge);
+    const LidarFactor points = factor(single);
+    const std::vector<Vector3d> world = points.undistort(path);
+    for (std::size_t i = 0; i < world.size(); i++) correspondences[i].point = world[i];
+    const LidarFactor lidar = factor(single);
+    const Linearised at(lidar, path, 1);
+    EXPECT_LT(at.g.norm(), 1e-5 * at.H.norm());
+    EXPECT_LT((at.H - at.H.transpose()).norm(), 1e-12 * at.H.norm());
+    for (int i = 0; i < 10; i++)
+    {
+        Eigen::VectorXd d(kSize);
+        for (int k = 0; k < kSize; k++) d[k] = 1e-4 * random.normal();
+        path.setStates(
+            previous.retract(d.head<NavState::kSize>()),
+            current.retract(d.tail<NavState::kSize>()));
+        const double expected = 0.5 * d.dot(at.H * d);
+        EXPECT_NEAR(lidar.cost(path, 1), expected, 0.01 * expected);
+    }
+}
+
+TEST_F(LidarFactorTest, IsBitEqualWithAnyNumberOfThreads)
+{
+    addPoints(3000);
+    const SweepPath path = pathOf(Undistortion::Bridge);
+    const LidarFactor one = factor(single);
+    const Linearised expected(one, path, 1);
+    const std::vector<Vector3d> points = one.undistort(path);
+    for (const int threads : {2, 5})
+    {
+        Executor executor(threads);
+        const LidarFactor many = factor(executor);
+        const Linearised found(many, path, 1);
+        EXPECT_EQ(found.cost, expected.cost);
+        EXPECT_EQ(found.H, expected.H);
+        EXPECT_EQ(found.g, expected.g);
+        EXPECT_EQ(many.undistort(path), points);
+    }
+}
+
+TEST_F(LidarFactorTest, AddsToWhatIsThere)
+{
+    addPoints(50);
+    const SweepPath path = pathOf(Undistortion::Iterated);
+    const LidarFactor lidar = factor(single);
+    const Linearised once(lidar, path, 1);
+    Linearised twice = once;
+    lidar.linearize(path, 1, twice.H, twice.g);
+    EXPECT_LT((twice.H - 2 * once.H).norm(), 1e-9 * once.H.norm());
+    EXPECT_LT((twice.g - 2 * once.g).norm(), 1e-9 * once.g.norm());
+}
+
+TEST_F(LidarFactorTest, PointToLineIsThePapersInNorm)
+{
+    // Two rows across the line stand for the paper's three rows n^ (y - p0) of rank two.
+    addPoints(1);
+    noise.kernel.kind = Kernel::None;
+    Correspondence& c = correspondences[0];
+    c.surface = Surface::Line;
+    const SweepPath path = pathOf(Undistortion::Iterated);
+    for (int i = 0; i < 20; i++)
+    {
+        c.direction = random.vector(1).normalized();
+        const LidarFactor lidar = factor(single);
+        const Vector3d d = lidar.undistort(path)[0] - c.point;
+        const double variance = noise.sigma * noise.sigma + c.sigma * c.sigma;
+        const double expected = 0.5 * (hat(c.direction) * d).squaredNorm() / variance;
+        EXPECT_NEAR(lidar.cost(path, 1), expected, 1e-9 * expected);
+        EXPECT_NEAR(Linearised(lidar, path, 1).cost, expected, 1e-9 * expected);
+    }
+}
+
+TEST_F(LidarFactorTest, PointToPlaneIsTheDistanceAlongTheNormal)
+{
+    addPoints(1);
+    noise.kernel.kind = Kernel::None;
+    Correspondence& c = correspondences[0];
+    c.surface = Surface::Plane;
+    const SweepPath path = pathOf(Undistortion::Iterated);
+    const LidarFactor lidar = factor(single);
+    const double r = c.direction.dot(lidar.undistort(path)[0] - c.point);
+    const double variance = 4 * (noise.sigma * noise.sigma + c.sigma * c.sigma);  // balance of 2
+    EXPECT_NEAR(lidar.cost(path, 2), 0.5 * r * r / variance, 1e-9);
+}
+
+TEST_F(LidarFactorTest, UndistortsEveryPointByThePoseAtItsTime)
+{
+    addPoints(600);
+    const SweepPath path = pathOf(Undistortion::Bridge);
+    const std::vector<Vector3d> world = factor(single).undistort(path);
+    ASSERT_EQ(world.size(), features.points.size());
+    for (std::size_t i = 0; i < world.size(); i++)
+    {
+        const Feature& f = features.points[i];
+        std::size_t hint = 0;
+        const Pose pose = path.poseAt(features.stamp + f.offset, hint);
+        EXPECT_LT((world[i] - pose * Vector3d(f.position.cast<double>())).norm(), 1e-9);
+    }
+}
+
+TEST_F(LidarFactorTest, ReducedChiSquareOfRightNoiseIsOne)
+{
+    const SweepPath path = pathOf(Undistortion::Bridge);
+    addPoints(4000);
+    noise.kernel.kind = Kernel::None;
+    const std::vector<Vector3d> world = factor(single).undistort(path);
+    int used = 0;
+    for (std::size_t i = 0; i < world.size(); i++)
+    {
+        Correspondence& c = correspondences[i];
+        used += c.surface != Surface::None;
+        c.point = world[i] + random.vector(std::hypot(noise.sigma, c.sigma));
+    }
+    const LidarFactor lidar = factor(single);
+    EXPECT_EQ(lidar.fit(path, 1).count, used);
+    EXPECT_NEAR(lidar.fit(path, 1).reducedChi2(), 1, 0.05);
+    EXPECT_NEAR(lidar.fit(path, 0.5).reducedChi2(), 4, 0.2);
+}
+
+TEST_F(LidarFactorTest, WithoutCorrespondencesThereIsNoCost)
+{
+    addPoints(300);
+    for (Correspondence& c : correspondences) c.surface = Surface::None;
+    const SweepPath path = pathOf(Undistortion::Bridge);
+    const LidarFactor lidar = factor(single);
+    const Linearised at(lidar, path, 1);
+    EXPECT_EQ(at.cost, 0);
+    EXPECT_EQ(at.H.norm(), 0);
+    EXPECT_EQ(lidar.fit(path, 1).count, 0);
+    EXPECT_EQ(lidar.fit(path, 1).reducedChi2(), 1);
+
+    const Features none;
+    const LidarFactor empty(none, noise, single);
+    EXPECT_EQ(empty.cost(path, 1), 0);
+    EXPECT_TRUE(empty.undistort(path).empty());
+}
