@@ -9,14 +9,14 @@ ImuSample interpolate(const ImuSample& a, const ImuSample& b, Time t)
     return {t, a.gyro + s * (b.gyro - a.gyro), a.accel + s * (b.accel - a.accel)};
 }
 
-MotionDelta stepBackwardValue(
-    const MotionDelta& at_later, const ImuSample& later, const ImuSample& earlier,
+Motion stepBackwardValue(
+    const Motion& at_later, const ImuSample& later, const ImuSample& earlier,
     const Vector3d& bias_accel, const Vector3d& bias_gyro)
 {
     const double dt = toSeconds(later.t - earlier.t);
-    const MotionDelta& L = at_later;
+    const Motion& L = at_later;
     const Vector3d rate = 0.5 * (later.gyro + earlier.gyro) - bias_gyro;
-    MotionDelta E;
+    Motion E;
     E.gamma = L.gamma * expSO3(-rate * dt);
     E.beta =
         L.beta -
@@ -30,7 +30,8 @@ MotionDelta stepBackward(
     const Vector3d& bias_accel, const Vector3d& bias_gyro)
 {
     const MotionDelta& L = at_later;
-    MotionDelta E = stepBackwardValue(at_later, later, earlier, bias_accel, bias_gyro);
+    MotionDelta E;
+    static_cast<Motion&>(E) = stepBackwardValue(at_later, later, earlier, bias_accel, bias_gyro);
     const double dt = toSeconds(later.t - earlier.t);
     const Vector3d turned = -(0.5 * (later.gyro + earlier.gyro) - bias_gyro) * dt;
 
@@ -93,7 +94,7 @@ MotionDelta PreintegratedImu::at(Time t) const
     return at(t, hint);
 }
 
-MotionDelta PreintegratedImu::valueAt(Time t, std::size_t& hint) const
+Motion PreintegratedImu::valueAt(Time t, std::size_t& hint) const
 {
     const std::size_t i = hint = intervalOf(t, hint);
     const ImuSample at_t = interpolate(knots[i + 1].sample, knots[i].sample, t);

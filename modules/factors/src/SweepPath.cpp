@@ -49,7 +49,7 @@ SweepPath::SweepPath(
     setStates(prior_previous, prior_current);
 }
 
-Vector3d SweepPath::aprioriPosition(double d, const MotionDelta& motion) const
+Vector3d SweepPath::aprioriPosition(double d, const Motion& motion) const
 {
     // The one-pass modes keep the a-priori velocity and direction of gravity.
     const NavState& x = isIterated(mode_) ? current_ : prior_current_;
@@ -78,16 +78,15 @@ void SweepPath::setStates(const NavState& previous, const NavState& current)
         Rt * (previous.v_world - current.v_world - kGravityWorld * duration_) - start_.beta;
 }
 
-SweepPath::Local SweepPath::localAt(Time t, const MotionDelta& motion) const
+SweepPath::Local SweepPath::localAt(Time t, const Motion& motion) const
 {
     Local at;
     at.d = toSeconds(imu_.end() - t);
     at.mu = at.d / duration_;
     if (mode_ == Undistortion::None) return at;
 
-    at.motion = motion;
-    at.apriori.R = at.motion.gamma;
-    if (mode_ != Undistortion::Rotation) at.apriori.p = aprioriPosition(at.d, at.motion);
+    at.apriori.R = motion.gamma;
+    if (mode_ != Undistortion::Rotation) at.apriori.p = aprioriPosition(at.d, motion);
 
     at.corrected = at.apriori;
     if (mode_ == Undistortion::Iterated || mode_ == Undistortion::Bridge)
@@ -111,30 +110,31 @@ Pose SweepPath::poseAt(Time t, std::size_t& hint) const
 
 Pose SweepPath::poseAt(Time t, std::size_t& hint, PathJacobian& jacobian) const
 {
-    const Local at = localAt(t, chain_.at(t, hint));
+    const MotionDelta motion = chain_.at(t, hint);
+    const Local at = localAt(t, motion);
     jacobian.setZero();
-    rotationJacobian(at, jacobian);
-    positionJacobian(at, jacobian);
+    rotationJacobian(at, motion, jacobian);
+    positionJacobian(at, motion, jacobian);
     return current_.T_world_imu * at.corrected;
 }
 
-void SweepPath::rotationJacobian(const Local& at, PathJacobian& J) const
+void SweepPath::rotationJacobian(const Local& at, const MotionDelta& motion, PathJacobian& J) const
 {
     J.block<3, 3>(kRows, kTheta) = at.corrected.R.transpose();
     if (!isIterated(mode_)) return;
-    J.block<3, 3>(kRows, kBg) = at.motion.dtheta_dbg;
+    J.block<3, 3>(kRows, kBg) = motion.dtheta_dbg;
     if (mode_ == Undistortion::IteratedImu) return;
 
     // R_D <- R_D Exp(d_D) moves the correction by dR_j <- dR_j Exp(e), e = mu Jr(mu phi) Jr^-1(phi)
     // d_D.
-    const Matrix3d spread = at.motion.gamma.transpose() * at.mu *
-                            rightJacobianSO3(at.mu * gap_log_) * inverseRightJacobianSO3(gap_log_);
+    const Matrix3d spread = motion.gamma.transpose() * at.mu * rightJacobianSO3(at.mu * gap_log_) *
+                            inverseRightJacobianSO3(gap_log_);
     J.block<3, 3>(kRows, kTheta) -= spread * gap_rotation_.transpose();
     J.block<3, 3>(kRows, kTheta0) = spread * start_.gamma;
     J.block<3, 3>(kRows, kBg) -= spread * start_.gamma * start_.dtheta_dbg;
 }
 
-void SweepPath::positionJacobian(const Local& at, PathJacobian& J) const
+void SweepPath::positionJacobian(const Local& at, const MotionDelta& motion, PathJacobian& J) const
 {
     const Matrix3d& R = current_.T_world_imu.R;
     const Matrix3d Rt = R.transpose();
@@ -148,13 +148,13 @@ void SweepPath::positionJacobian(const Local& at, PathJacobian& J) const
     Eigen::Matrix<double, 3, 2 * NavState::kSize> C;
     C.setZero();
     // pbar(d) = R^T (-v d - 1/2 g d^2) + alpha, times a factor, added to C.
-    const auto addApriori = [&](const Matrix3d& factor, double d, const MotionDelta& motion)
+    const auto addApriori = [&](const Matrix3d& factor, double d, const MotionDelta& m)
     {
         const Vector3d fall = Rt * (-current_.v_world * d - 0.5 * kGravityWorld * d * d);
         C.block<3, 3>(0, kTheta) += factor * hat(fall);
         C.block<3, 3>(0, kV) -= factor * Rt * d;
-        C.block<3, 3>(0, kBa) += factor * motion.dalpha_dba;
-        C.block<3, 3>(0, kBg) += factor * motion.dalpha_dbg;
+        C.block<3, 3>(0, kBa) += factor * m.dalpha_dba;
+        C.block<3, 3>(0, kBg) += factor * m.dalpha_dbg;
     };
     // R^T (p_{k-1} - p_k), times a factor.
     const auto addStart = [&](double factor)
@@ -166,7 +166,7 @@ void SweepPath::positionJacobian(const Local& at, PathJacobian& J) const
     };
 
     const double mu2 = at.mu * at.mu, mu3 = mu2 * at.mu;
-    addApriori(mode_ == Undistortion::Iterated ? at.correction : I, at.d, at.motion);
+    addApriori(mode_ == Undistortion::Iterated ? at.correction : I, at.d, motion);
     if (mode_ == Undistortion::Iterated)
     {
         const Matrix3d turn = -at.correction * hat(at.apriori.p) * at.mu *

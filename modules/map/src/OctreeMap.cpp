@@ -66,6 +66,7 @@ void OctreeMap::clear()
     levels_.assign(static_cast<std::size_t>(config.scales), {});
     blocks_.clear();
     insertions_ = 0;
+    lookups_.clear();
     last_center_.setConstant(1e300);
 }
 
@@ -116,6 +117,7 @@ void OctreeMap::slide(const Vector3d& center_world)
 {
     if ((center_world - last_center_).norm() < kBlockSize) return;
     last_center_ = center_world;
+    lookups_.clear();
     const double reach = config.window_radius + kBlockSize;
     const auto outside = [&](const octomap::OcTreeKey& key, unsigned depth)
     {
@@ -203,6 +205,7 @@ void OctreeMap::refresh(Window& window, int level, StatisticsTree::Cursor& curso
             static_cast<std::uint16_t>(window.corner[2] - (i & 4 ? step : 0)));
         if (const StatisticsNode* node = cursor.find(key, depth)) sum.add(node->statistics());
     }
+    if (sum.count < config.min_points) return;
     // Few new points change a surface little: it is kept until a tenth more have come, and one that
     // has seen none or few for a while is looked at less often.
     if (sum.count < 1.1 * window.count)
@@ -213,7 +216,7 @@ void OctreeMap::refresh(Window& window, int level, StatisticsTree::Cursor& curso
     window.patience = 0;
     const double min_width = config.min_spread * config.leaf_size * (1 << level);
     window.min_width2 = min_width * min_width;
-    if (sum.count >= config.min_points) compute(window, sum);
+    compute(window, sum);
 }
 
 void OctreeMap::compute(Window& window, const PointStatistics& statistics) const
@@ -246,105 +249,131 @@ bool OctreeMap::isLine(const Window& w) const
            w.width2 < config.max_flatness * config.max_flatness * w.length2;
 }
 
-Correspondence OctreeMap::choose(
-    const Vector3d& query, FeatureKind kind, const Window* const* windows) const
+double OctreeMap::variance(const Window& window) const
+{
+    return std::max(window.thickness2, config.min_sigma * config.min_sigma);
+}
+
+Correspondence OctreeMap::planeAt(const Vector3d& query, const Window& window) const
 {
     Correspondence c;
-    const Window* best = nullptr;
-    double thinnest = 1e300;
-    if (kind != FeatureKind::Edge)
-        for (int level = 0; level < config.scales; level++)
-        {
-            const Window* w = windows[level];
-            if (w == nullptr || !isPlane(*w)) continue;
-            const double floor2 = std::max(w->thickness2, config.min_sigma * config.min_sigma);
-            thinnest = std::min(thinnest, floor2);
-            if (floor2 <= thinnest * config.scale_tolerance * config.scale_tolerance) best = w;
-        }
-    if (best != nullptr)
-    {
-        const Vector3d d = query - best->mean;
-        const double distance = best->normal.dot(d);
-        if (std::abs(distance) > config.gate) return c;
-        c.surface = Surface::Plane;
-        c.direction = best->normal;
-        c.point = best->mean;
-        // Noise of a new point on the surface, and of the fitted plane at the query.
-        const double s2 = std::max(best->thickness2, config.min_sigma * config.min_sigma);
-        const double along = best->axis.dot(d);
-        const double across2 = std::max(0.0, d.squaredNorm() - distance * distance - along * along);
-        const double leverage =
-            (1 + along * along / best->length2 + across2 / best->width2) / best->count;
-        c.sigma = std::sqrt(s2 * (1 + leverage));
-        return c;
-    }
-    if (kind == FeatureKind::Plane) return c;
-    for (int level = 0; level < config.scales; level++)
-    {
-        const Window* w = windows[level];
-        if (w == nullptr || !isLine(*w)) continue;
-        const Vector3d d = query - w->mean;
-        const double along = w->axis.dot(d);
-        if (d.squaredNorm() - along * along > config.gate * config.gate) continue;
-        c.surface = Surface::Line;
-        c.direction = w->axis;
-        c.point = w->mean;
-        c.sigma = std::sqrt(std::max(w->width2, config.min_sigma * config.min_sigma));
-        break;
-    }
+    const Vector3d d = query - window.mean;
+    const double distance = window.normal.dot(d);
+    if (std::abs(distance) > config.gate) return c;
+    c.surface = Surface::Plane;
+    c.direction = window.normal;
+    c.point = window.mean;
+    // Noise of a new point on the surface, and of the fitted plane at the query.
+    const double along = window.axis.dot(d);
+    const double across2 = std::max(0.0, d.squaredNorm() - distance * distance - along * along);
+    const double leverage =
+        (1 + along * along / window.length2 + across2 / window.width2) / window.count;
+    c.sigma = std::sqrt(variance(window) * (1 + leverage));
     return c;
+}
+
+Correspondence OctreeMap::lineAt(const Vector3d& query, const Window& window) const
+{
+    Correspondence c;
+    const Vector3d d = query - window.mean;
+    const double along = window.axis.dot(d);
+    if (d.squaredNorm() - along * along > config.gate * config.gate) return c;
+    c.surface = Surface::Line;
+    c.direction = window.axis;
+    c.point = window.mean;
+    c.sigma = std::sqrt(std::max(window.width2, config.min_sigma * config.min_sigma));
+    return c;
+}
+
+void OctreeMap::findWindows(const std::vector<MapPoint>& queries, int l, Executor& executor) const
+{
+    Level& level = levels_[static_cast<std::size_t>(l)];
+    std::vector<std::uint32_t> stale;
+    for (std::size_t i = 0; i < queries.size(); i++)
+    {
+        if (!searches_[i].active) continue;
+        std::array<std::uint16_t, 3> corner;
+        if (!queries[i].position.allFinite() || !cornerOf(queries[i].position, l, corner))
+        {
+            searches_[i].active = false;
+            continue;
+        }
+        Lookup& last = lookups_[i * levels_.size() + static_cast<std::size_t>(l)];
+        if (last.window == kNoWindow || last.corner != corner)
+            last = {corner, windowAt(level, corner)};
+        searches_[i].window = last.window;
+        Window& window = level.windows[last.window];
+        if (!isStale(window)) continue;
+        window.checked = insertions_;
+        stale.push_back(last.window);
+    }
+    executor.forChunks(
+        stale.size(), 64,
+        [&](std::size_t, std::size_t begin, std::size_t end)
+        {
+            StatisticsTree::Cursor cursor(*tree_);
+            for (std::size_t i = begin; i < end; i++) refresh(level.windows[stale[i]], l, cursor);
+        });
+}
+
+void OctreeMap::advance(Search& search, FeatureKind kind, int l) const
+{
+    const auto& windows = levels_[static_cast<std::size_t>(l)].windows;
+    const Window& w = windows[search.window];
+    const auto take = [&](bool line)
+    {
+        search.best = search.window;
+        search.best_level = static_cast<std::int8_t>(l);
+        search.line = line;
+    };
+    if (w.count < config.min_points)
+    {
+        search.active = false;  // smaller windows hold still fewer
+        return;
+    }
+    const bool plane = kind != FeatureKind::Edge && isPlane(w);
+    if (search.best_level < 0 || search.line)
+    {
+        if (plane)
+            take(false);
+        else if (search.best_level < 0 && kind != FeatureKind::Plane && isLine(w))
+            take(true);
+        return;
+    }
+    // A plane is at hand: a smaller window replaces it only if it is clearly thinner.
+    const auto& best_windows = levels_[static_cast<std::size_t>(search.best_level)].windows;
+    const double tolerance = config.scale_tolerance * config.scale_tolerance;
+    if (plane && variance(best_windows[search.best]) > tolerance * variance(w))
+        take(false);
+    else
+        search.active = false;
 }
 
 void OctreeMap::match(
     const std::vector<MapPoint>& queries, std::vector<Correspondence>& correspondences,
     Executor& executor) const
 {
-    const auto n = queries.size();
-    const auto scales = static_cast<std::size_t>(config.scales);
-    constexpr std::uint32_t kNone = 0xffffffff;
-    correspondences.assign(n, {});
-    std::vector<std::uint32_t> found(n * scales, kNone);
-    for (std::size_t l = 0; l < scales; l++)
+    correspondences.assign(queries.size(), {});
+    searches_.assign(queries.size(), {});
+    const std::size_t lookups = queries.size() * levels_.size();
+    if (lookups_insertion_ != insertions_ || lookups_.size() != lookups)
     {
-        Level& level = levels_[l];
-        std::vector<std::uint32_t> stale;
-        for (std::size_t i = 0; i < n; i++)
-        {
-            std::array<std::uint16_t, 3> corner;
-            if (!queries[i].position.allFinite() ||
-                !cornerOf(queries[i].position, static_cast<int>(l), corner))
-                continue;
-            const std::uint32_t w = windowAt(level, corner);
-            found[i * scales + l] = w;
-            if (isStale(level.windows[w]))
-            {
-                level.windows[w].checked = insertions_;
-                stale.push_back(w);
-            }
-        }
-        executor.forChunks(
-            stale.size(), 64,
-            [&](std::size_t, std::size_t begin, std::size_t end)
-            {
-                StatisticsTree::Cursor cursor(*tree_);
-                for (std::size_t i = begin; i < end; i++)
-                    refresh(level.windows[stale[i]], static_cast<int>(l), cursor);
-            });
+        lookups_.assign(lookups, {});
+        lookups_insertion_ = insertions_;
     }
-    executor.forChunks(
-        n, 256,
-        [&](std::size_t, std::size_t begin, std::size_t end)
-        {
-            std::array<const Window*, 8> windows{};
-            for (std::size_t i = begin; i < end; i++)
-            {
-                for (std::size_t l = 0; l < scales; l++)
-                {
-                    const std::uint32_t w = found[i * scales + l];
-                    windows[l] = w == kNone ? nullptr : &levels_[l].windows[w];
-                }
-                correspondences[i] = choose(queries[i].position, queries[i].kind, windows.data());
-            }
-        });
+    for (int level = config.scales - 1; level >= 0; level--)
+    {
+        findWindows(queries, level, executor);
+        for (std::size_t i = 0; i < queries.size(); i++)
+            if (searches_[i].active) advance(searches_[i], queries[i].kind, level);
+    }
+    for (std::size_t i = 0; i < queries.size(); i++)
+    {
+        const Search& s = searches_[i];
+        if (s.best_level < 0) continue;
+        const Window& w = levels_[static_cast<std::size_t>(s.best_level)].windows[s.best];
+        correspondences[i] =
+            s.line ? lineAt(queries[i].position, w) : planeAt(queries[i].position, w);
+    }
 }
 }  // namespace taut

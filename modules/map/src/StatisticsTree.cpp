@@ -36,9 +36,8 @@ unsigned StatisticsTree::Cursor::sharedDepth(const octomap::OcTreeKey& key) cons
     const unsigned differing = static_cast<unsigned>(key[0] ^ key_[0]) |
                                static_cast<unsigned>(key[1] ^ key_[1]) |
                                static_cast<unsigned>(key[2] ^ key_[2]);
-    unsigned shared = tree_.tree_depth;
-    for (unsigned bits = differing; bits != 0; bits >>= 1) --shared;
-    return shared;
+    const int used_bits = differing == 0 ? 0 : 32 - __builtin_clz(differing);
+    return tree_.tree_depth - static_cast<unsigned>(used_bits);
 }
 
 const StatisticsNode* StatisticsTree::Cursor::find(const octomap::OcTreeKey& key, unsigned depth)

@@ -133,6 +133,7 @@ void Odometry::estimate(
     result.balance = balance;
     result.previous = problem.previous();
 
+    problem.relinearize();
     const NavState::Matrix lidar_information = problem.lidarInformation();
     result.translation_information =
         eigenvaluesOf(lidar_information.block<3, 3>(NavState::kPosition, NavState::kPosition));

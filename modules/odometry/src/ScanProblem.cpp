@@ -92,14 +92,23 @@ double ScanProblem::linearize(ProblemMatrix& hessian, ProblemVector& gradient)
     gradient.setZero(dimension());
     double cost = addImu(hessian, gradient) + addBiasPrior(hessian, gradient);
     if (released()) cost += addPrior(hessian, gradient);
-    if (!use_lidar_) return cost;
-    if (released()) return cost + lidar_.linearize(path_, balance_, hessian, gradient);
-    ProblemMatrix H = ProblemMatrix::Zero(2 * kN, 2 * kN);
-    ProblemVector g = ProblemVector::Zero(2 * kN);
-    cost += lidar_.linearize(path_, balance_, H, g);
-    hessian += H.bottomRightCorner(kN, kN);
-    gradient += g.tail(kN);
+
+    lidar_hessian_.setZero(2 * kN, 2 * kN);
+    ProblemVector lidar_gradient = ProblemVector::Zero(2 * kN);
+    if (use_lidar_) cost += lidar_.linearize(path_, balance_, lidar_hessian_, lidar_gradient);
+    hessian += lidar_hessian_.bottomRightCorner(dimension(), dimension());
+    gradient += lidar_gradient.tail(dimension());
+    hessian_ = hessian;
+    linearized_ = true;
     return cost;
+}
+
+void ScanProblem::relinearize()
+{
+    if (linearized_) return;
+    ProblemMatrix H;
+    ProblemVector g;
+    linearize(H, g);
 }
 
 double ScanProblem::cost()
@@ -115,6 +124,7 @@ void ScanProblem::retract(const ProblemVector& delta)
 {
     if (released()) previous_ = previous_.retract(delta.head<kN>());
     current_ = current_.retract(delta.tail<kN>());
+    linearized_ = false;
     path_.setStates(previous_, current_);
 }
 
@@ -128,6 +138,7 @@ void ScanProblem::restore()
 {
     previous_ = saved_previous_;
     current_ = saved_current_;
+    linearized_ = false;
     path_.setStates(previous_, current_);
 }
 
@@ -157,21 +168,15 @@ ProblemVector ScanProblem::maxStep() const
 
 NavState::Matrix ScanProblem::lidarInformation() const
 {
-    ProblemMatrix H = ProblemMatrix::Zero(2 * kN, 2 * kN);
-    ProblemVector g = ProblemVector::Zero(2 * kN);
-    if (use_lidar_) lidar_.linearize(path_, balance_, H, g);
-    return H.bottomRightCorner<kN, kN>();
+    return lidar_hessian_.bottomRightCorner<kN, kN>();
 }
 
-NavState::Matrix ScanProblem::marginalInformation()
+NavState::Matrix ScanProblem::marginalInformation() const
 {
-    ProblemMatrix H(dimension(), dimension());
-    ProblemVector g(dimension());
-    linearize(H, g);
-    if (!released()) return H;
-    const NavState::Matrix to_previous = H.bottomLeftCorner<kN, kN>();
-    const NavState::Matrix previous = H.topLeftCorner<kN, kN>();
-    const NavState::Matrix current = H.bottomRightCorner<kN, kN>();
+    if (!released()) return hessian_;
+    const NavState::Matrix to_previous = hessian_.bottomLeftCorner<kN, kN>();
+    const NavState::Matrix previous = hessian_.topLeftCorner<kN, kN>();
+    const NavState::Matrix current = hessian_.bottomRightCorner<kN, kN>();
     const NavState::Matrix marginal =
         current - to_previous * previous.ldlt().solve(to_previous.transpose());
     return 0.5 * (marginal + marginal.transpose());

@@ -8,15 +8,19 @@
 
 namespace taut
 {
-/** Backward preintegrated motion at one time t <= t_k (paper, equation 7), with its derivatives by
- * the biases. All in the body frame at t_k; `gamma` = R_{b_t}^{b_k}. The integrals are signed: they
- * run backward, so beta of a body at rest is -g d and alpha +1/2 g d^2. */
-struct MotionDelta
+/** Backward preintegrated motion at one time t <= t_k (paper, equation 7). All in the body frame at
+ * t_k; `gamma` = R_{b_t}^{b_k}. The integrals are signed: they run backward, so beta of a body at
+ * rest is -g d and alpha +1/2 g d^2. */
+struct Motion
 {
     Matrix3d gamma = Matrix3d::Identity();
     Vector3d beta = Vector3d::Zero();   //!< [m/s]
     Vector3d alpha = Vector3d::Zero();  //!< [m]
+};
 
+/** A motion with its derivatives by the biases. */
+struct MotionDelta : Motion
+{
     Matrix3d dtheta_dbg = Matrix3d::Zero();  //!< gamma(bg + d) = gamma Exp(dtheta_dbg d)
     Matrix3d dbeta_dba = Matrix3d::Zero(), dbeta_dbg = Matrix3d::Zero();
     Matrix3d dalpha_dba = Matrix3d::Zero(), dalpha_dbg = Matrix3d::Zero();
@@ -59,7 +63,7 @@ class PreintegratedImu
     MotionDelta at(Time t) const;
 
     /** The same without the derivatives. */
-    MotionDelta valueAt(Time t, std::size_t& hint) const;
+    Motion valueAt(Time t, std::size_t& hint) const;
 
  private:
     std::size_t intervalOf(Time t, std::size_t hint) const;
@@ -71,9 +75,9 @@ MotionDelta stepBackward(
     const MotionDelta& at_later, const ImuSample& later, const ImuSample& earlier,
     const Vector3d& bias_accel, const Vector3d& bias_gyro);
 
-/** The same without the derivatives, which are left zero: for the many points of a scan. */
-MotionDelta stepBackwardValue(
-    const MotionDelta& at_later, const ImuSample& later, const ImuSample& earlier,
+/** The same without the derivatives: for the many points of a scan. */
+Motion stepBackwardValue(
+    const Motion& at_later, const ImuSample& later, const ImuSample& earlier,
     const Vector3d& bias_accel, const Vector3d& bias_gyro);
 
 /** First-order correction of a motion for biases other than those it was integrated with. */

@@ -59,10 +59,10 @@ class SweepPath
         Matrix3d correction = Matrix3d::Identity();  // dR_j
     };
 
-    Local localAt(Time t, const MotionDelta& motion) const;
-    Vector3d aprioriPosition(double d, const MotionDelta& motion) const;
-    void rotationJacobian(const Local& at, PathJacobian& J) const;
-    void positionJacobian(const Local& at, PathJacobian& J) const;
+    Local localAt(Time t, const Motion& motion) const;
+    Vector3d aprioriPosition(double d, const Motion& motion) const;
+    void rotationJacobian(const Local& at, const MotionDelta& motion, PathJacobian& J) const;
+    void positionJacobian(const Local& at, const MotionDelta& motion, PathJacobian& J) const;
 
     Undistortion mode_;
     const PreintegratedImu& imu_;

@@ -83,13 +83,31 @@ class OctreeMap : public Map
         std::vector<std::uint32_t> free;
     };
 
+    /** The search of one query: from the largest window down. */
+    struct Search
+    {
+        std::uint32_t best = kNoWindow, window = kNoWindow;
+        std::int8_t best_level = -1;
+        bool active = true, line = false;
+    };
+    /** Where a query of the last match() looked: iterations seldom leave a window. */
+    struct Lookup
+    {
+        std::array<std::uint16_t, 3> corner{};
+        std::uint32_t window = kNoWindow;
+    };
+    static constexpr std::uint32_t kNoWindow = 0xffffffff;
+
     bool cornerOf(const Vector3d& p, int level, std::array<std::uint16_t, 3>& corner) const;
     std::uint32_t windowAt(Level& level, const std::array<std::uint16_t, 3>& corner) const;
     void refresh(Window& window, int level, StatisticsTree::Cursor& cursor) const;
     bool isStale(const Window& window) const;
     void compute(Window& window, const PointStatistics& statistics) const;
-    Correspondence choose(
-        const Vector3d& query, FeatureKind kind, const Window* const* windows) const;
+    void findWindows(const std::vector<MapPoint>& queries, int level, Executor& executor) const;
+    void advance(Search& search, FeatureKind kind, int level) const;
+    Correspondence planeAt(const Vector3d& query, const Window& window) const;
+    Correspondence lineAt(const Vector3d& query, const Window& window) const;
+    double variance(const Window& window) const;
     bool isPlane(const Window& window) const;
     bool isLine(const Window& window) const;
     unsigned depthOf(int level) const;
@@ -97,6 +115,9 @@ class OctreeMap : public Map
 
     std::unique_ptr<StatisticsTree> tree_;
     mutable std::vector<Level> levels_;  // a cache: its content follows from the tree
+    mutable std::vector<Search> searches_;
+    mutable std::vector<Lookup> lookups_;  // a query and level each
+    mutable std::uint32_t lookups_insertion_ = 0;
     std::uint32_t insertions_ = 0;
     tsl::robin_set<std::uint64_t, KeyHash> blocks_;  // coarse nodes that exist, for slide()
     Vector3d last_center_ = Vector3d::Constant(1e300);

@@ -35,15 +35,28 @@ class ScanProblem : public LeastSquaresProblem
     const NavState& previous() const { return previous_; }
     const NavState& current() const { return current_; }
 
-    void setBalance(double balance) { balance_ = balance; }
+    /** Factor on the LiDAR noise. */
+    void setBalance(double balance)
+    {
+        balance_ = balance;
+        linearized_ = false;
+    }
     /** Without LiDAR the problem is prediction and prior alone. */
-    void useLidar(bool use) { use_lidar_ = use; }
+    void useLidar(bool use)
+    {
+        use_lidar_ = use;
+        linearized_ = false;
+    }
 
-    /** Hessian of the LiDAR block by x_k alone: what the scan says of each direction. */
+    /** Linearises at the current estimate, unless that was the last thing done. */
+    void relinearize();
+
+    /** Hessian of the LiDAR block by x_k alone at the last linearisation: what the scan says of
+     * each direction. */
     NavState::Matrix lidarInformation() const;
 
-    /** Information of x_k after x_{k-1} is marginalised, at the current estimate. */
-    NavState::Matrix marginalInformation();
+    /** Information of x_k after x_{k-1} is marginalised, at the last linearisation. */
+    NavState::Matrix marginalInformation() const;
 
  private:
     bool released() const { return config_.previous_state == PreviousState::Released; }
@@ -58,6 +71,8 @@ class ScanProblem : public LeastSquaresProblem
     const EstimationConfig& config_;
     NavState previous_, current_, saved_previous_, saved_current_;
     NavState::Matrix imu_information_;
+    ProblemMatrix hessian_, lidar_hessian_;  // of the last linearisation
+    bool linearized_ = false;                // at the current estimate, noise and correspondences
     double balance_ = 1;
     bool use_lidar_ = true;
 };
