@@ -77,6 +77,8 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples& imu)
 
     const PreintegratedImu motion = integrate(scan.end, imu);
     const NavState prior = predict(motion, previous_.state);
+    result.motion = motion.knots.back().delta;
+    result.duration = motion.duration();
     SweepPath path(
         scan.already_undistorted ? Undistortion::None : config_.estimation.undistortion, motion,
         previous_.state, prior);

@@ -18,8 +18,37 @@ constexpr double kImuGap = 0.1;    // [s] worth a warning
 constexpr double kLidarGap = 0.5;  // [s]
 
 // Scans that a start in motion looks at, and how often.
-constexpr std::size_t kBootstrapScans = 4;
+constexpr std::size_t kBootstrapScans = 10;
 constexpr int kBootstrapPasses = 4;
+
+/** Gravity, in the world frame of the results, from the LiDAR's poses and the IMU's integrals: the
+ * positions are p_0 + v_0 t + (double integral of R a) - 1/2 g t^2, linear in v_0 and g. */
+Vector3d gravityFrom(const std::vector<ScanResult>& results)
+{
+    // The pose after the next scan is better than the one before it.
+    const auto poseOf = [&](std::size_t k)
+    {
+        return k + 1 < results.size() ? results[k + 1].previous.T_world_imu
+                                      : results[k].estimate.state.T_world_imu;
+    };
+    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+    Eigen::Matrix<double, 2, 3> right = Eigen::Matrix<double, 2, 3>::Zero();
+    Vector3d single = Vector3d::Zero(), twice = Vector3d::Zero();  // integrals of R a
+    double t = 0;
+    for (std::size_t k = 1; k < results.size(); k++)
+    {
+        const Matrix3d R = poseOf(k).R;
+        const Motion& m = results[k].motion;
+        const double dt = results[k].duration;
+        twice += single * dt - R * (m.beta * dt + m.alpha);
+        single -= R * m.beta;
+        t += dt;
+        const Eigen::Vector2d row(t, -0.5 * t * t);
+        normal += row * row.transpose();
+        right += row * (poseOf(k).p - poseOf(0).p - twice).transpose();
+    }
+    return normal.ldlt().solve(right).row(1).transpose();
+}
 }  // namespace
 
 Pipeline::Pipeline(
@@ -135,22 +164,35 @@ std::size_t Pipeline::readyScans() const
     return n;
 }
 
+std::vector<ScanResult> Pipeline::tryStart(const Initialization& start)
+{
+    odometry_.start(start, withImu());
+    std::vector<ScanResult> results;
+    for (std::size_t i = 0; i < std::min(waiting_.size(), kBootstrapScans); i++)
+        if (waiting_[i].end > odometry_.time())
+            results.push_back(odometry_.process(waiting_[i], imu_));
+    return results;
+}
+
 void Pipeline::bootstrap()
 {
-    // In motion, the first scan is undistorted with an unknown velocity and makes a wrong map. The
-    // scans after it tell the velocity: start again with that one, until map and velocity agree.
+    // In motion, the first scan is undistorted with an unknown velocity and makes a wrong map, and
+    // the mean specific force is not gravity. The scans after it tell both: start again with what
+    // they tell, until map and motion agree.
     bootstrapped_ = true;
     Initialization start = *initialization_;
     for (int pass = 0; pass < kBootstrapPasses; pass++)
     {
-        odometry_.start(start, withImu());
-        std::vector<ScanResult> results;
-        for (std::size_t i = 0; i < std::min(waiting_.size(), kBootstrapScans); i++)
-            if (waiting_[i].end > odometry_.time())
-                results.push_back(odometry_.process(waiting_[i], imu_));
+        const std::vector<ScanResult> results = tryStart(start);
         if (results.size() < 2) break;
         NavState& x = start.estimate.state;
         x.v_world += results[1].previous.v_world - results[0].estimate.state.v_world;
+        if (!withImu() || results.size() < kBootstrapScans) continue;
+        const Matrix3d R_level_world =
+            Eigen::Quaterniond::FromTwoVectors(gravityFrom(results), kGravityWorld)
+                .toRotationMatrix();
+        x.T_world_imu.R = R_level_world * x.T_world_imu.R;
+        x.v_world = R_level_world * x.v_world;
     }
     odometry_.start(start, withImu());
 }

@@ -22,6 +22,8 @@ struct ScanResult
     NavEstimate estimate;  //!< x_k after this scan
     NavState previous;     //!< x_{k-1} as this scan moved it; x_{k-1} unchanged where it is held
     std::vector<Vector3d> points;  //!< undistorted points as inserted, world frame [m]
+    Motion motion;                 //!< preintegrated, from this state back to the previous one
+    double duration = 0;           //!< [s] between both
     std::size_t scan_points = 0;   //!< raw points used, in range and time
     int features = 0, correspondences = 0, iterations = 0;
     bool converged = true;

@@ -40,6 +40,7 @@ class Pipeline
     void processReady(bool all);
     std::size_t readyScans() const;
     void bootstrap();
+    std::vector<ScanResult> tryStart(const Initialization& start);
     void process(const Scan& scan);
 
     const OdometryConfig& config_;
