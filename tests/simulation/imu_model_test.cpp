@@ -155,3 +155,38 @@ TEST(ImuModel, SaturatesAtItsRangeAndShiftsItsClock)
     }
     EXPECT_EQ(peak, 2);
 }
+
+TEST(ImuModel, VibrationIsHeardAndAveragedAway)
+{
+    ImuConfig config = imuPreset(ImuPreset::Ideal);
+    config.accel_vibration = 2;
+    config.vibration_frequency = 37;
+    const auto peak = [](const ImuConfig& c)
+    {
+        double largest = 0;
+        for (const ImuSample& s : atRest(c, 10, 1).samples)
+            largest = std::max(largest, std::abs(s.accel.x()));
+        return largest;
+    };
+    const double x = M_PI * 37 / config.rate;
+    EXPECT_NEAR(peak(config), 2 * std::sin(x) / x, 0.01);
+    config.averaging = false;
+    EXPECT_NEAR(peak(config), 2, 0.01);
+}
+
+TEST(ImuModel, PresetsAreWorseTheCheaper)
+{
+    const ImuConfig tactical = imuPreset(ImuPreset::Tactical);
+    const ImuConfig industrial = imuPreset(ImuPreset::Industrial);
+    const ImuConfig consumer = imuPreset(ImuPreset::Consumer);
+    const auto better = [](const ImuConfig& a, const ImuConfig& b)
+    {
+        return a.noise.gyro < b.noise.gyro && a.noise.accel < b.noise.accel &&
+               a.noise.gyro_bias_walk < b.noise.gyro_bias_walk &&
+               a.noise.accel_bias_walk < b.noise.accel_bias_walk && a.gyro_bias < b.gyro_bias &&
+               a.accel_bias <= b.accel_bias && a.gyro_scale < b.gyro_scale &&
+               a.accel_scale < b.accel_scale && a.accel_misalignment < b.accel_misalignment;
+    };
+    EXPECT_TRUE(better(tactical, industrial));
+    EXPECT_TRUE(better(industrial, consumer));
+}

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "simulation_support.h"
 
@@ -134,4 +136,89 @@ TEST(LidarPattern, Vlp16FiresAsItsManualSays)
     const auto next = pattern->sweep(1);
     EXPECT_GT(next.front().t, shots.back().t);
     EXPECT_LT(next.front().t - shots.back().t, 56000);
+}
+
+TEST(LidarPattern, EverySensorSeesWhatItsDataSheetSays)
+{
+    struct Facts
+    {
+        std::unique_ptr<LidarPattern> pattern;
+        int rings;
+        double lowest, highest;  // degrees
+        double shots_a_second;
+    };
+    std::vector<Facts> all;
+    all.push_back({makeVlp16Pattern(10), 16, -15, 15, 16 / 55.296e-6});
+    all.push_back({makeHdl32Pattern(10), 32, -30.67, 10.67, 32 / 46.08e-6});
+    all.push_back({makeHdl64Pattern(10), 64, -24.33, 2, 64 / 48e-6});
+    all.push_back({makeOs1Pattern(64, 10), 64, -16.6, 16.6, 655360});
+    all.push_back({makeOs1Pattern(128, 10), 128, -21.4, 21.4, 1310720});
+    for (const Facts& facts : all)
+    {
+        SCOPED_TRACE(facts.rings);
+        EXPECT_EQ(facts.pattern->rings(), facts.rings);
+        double lowest = 90, highest = -90, shots = 0;
+        Duration last = -1;
+        for (int k = 0; k < 5; k++)
+            for (const Shot& shot : facts.pattern->sweep(k))
+            {
+                EXPECT_NEAR(shot.direction.norm(), 1, 1e-12);
+                EXPECT_LT(shot.ring, facts.rings);
+                EXPECT_GE(shot.t, last);
+                EXPECT_EQ(shot.t % 100, 0);
+                last = shot.t;
+                const double elevation = std::asin(shot.direction.z()) * 180 / M_PI;
+                lowest = std::min(lowest, elevation);
+                highest = std::max(highest, elevation);
+                shots++;
+            }
+        EXPECT_NEAR(lowest, facts.lowest, 0.01);
+        EXPECT_NEAR(highest, facts.highest, 0.01);
+        EXPECT_NEAR(shots / 0.5, facts.shots_a_second, 1e-3 * facts.shots_a_second);
+    }
+}
+
+TEST(LidarPattern, TheRosetteFillsACircleAndNeverRepeats)
+{
+    const auto pattern = makeRosettePattern(10);
+    const auto first = pattern->sweep(0), second = pattern->sweep(1);
+    ASSERT_EQ(first.size(), 10000U);
+    double widest = 0, same = 0;
+    for (std::size_t i = 0; i < first.size(); i++)
+    {
+        widest = std::max(widest, std::acos(first[i].direction.x()) * 180 / M_PI);
+        same += (first[i].direction - second[i].direction).norm() < 1e-3;
+    }
+    EXPECT_NEAR(widest, 35.2, 0.01);
+    EXPECT_LT(same, 100);
+}
+
+TEST(Lidar, ABeamOverAnEdgeMixesWhatIsNearAndSplitsWhatIsFar)
+{
+    // A step in a wall: 5 m away on the left, farther on the right.
+    const auto rangesAt = [](double step, double divergence)
+    {
+        Mesh mesh;
+        addQuad(mesh, {5, 0, -4}, {5, 4, -4}, {5, 4, 4}, {5, 0, 4}, 0.5F);
+        addQuad(
+            mesh, {5 + step, -4, -4}, {5 + step, 0, -4}, {5 + step, 0, 4}, {5 + step, -4, 4}, 0.5F);
+        const Scene scene{RayCaster(mesh), {}};
+        LidarConfig config = noiseFree();
+        config.T_imu_lidar = {};
+        config.divergence = divergence;
+        const Motion still(std::vector<Pose>(10), 1);
+        Executor executor(1);
+        std::vector<float> depths;
+        for (const LidarPoint& p : Lidar(config, 1).sweep(0, still, scene, executor).scan.points)
+            depths.push_back(p.position.x());
+        return depths;
+    };
+    const auto between = [](const std::vector<float>& depths, double near, double far)
+    {
+        return std::count_if(
+            depths.begin(), depths.end(), [&](float d) { return d > near && d < far; });
+    };
+    EXPECT_EQ(between(rangesAt(0.3, 0), 5.02, 5.28), 0);
+    EXPECT_GT(between(rangesAt(0.3, 3e-3), 5.02, 5.28), 10);
+    EXPECT_EQ(between(rangesAt(2, 3e-3), 5.02, 6.98), 0);
 }

@@ -1,13 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "program.h"
 #include "taut/core/Geometry.h"
 #include "taut/rawlog/RawlogSource.h"
 #include "taut/trajectory/Interpolation.h"
@@ -20,22 +18,9 @@ using ::testing::HasSubstr;
 
 namespace
 {
-struct ProgramRun
+test::ProgramRun run(const std::string& arguments)
 {
-    int exit_code = -1;
-    std::string output;  // of both streams
-};
-
-ProgramRun run(const std::string& arguments)
-{
-    ProgramRun out;
-    FILE* pipe = popen((TAUT_SIMULATE " " + arguments + " 2>&1").c_str(), "r");
-    std::array<char, 4096> buffer{};
-    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), pipe))
-        out.output.append(buffer.data(), n);
-    const int status = pclose(pipe);
-    if (WIFEXITED(status)) out.exit_code = WEXITSTATUS(status);
-    return out;
+    return test::runProgram(TAUT_SIMULATE, arguments);
 }
 
 std::string contentOf(const std::string& path)
@@ -72,7 +57,7 @@ class SimulateApp : public testing::Test
 {
  protected:
     /** A second of violent motion, unless the arguments say otherwise. */
-    ProgramRun simulate(const std::string& arguments, const std::string& name = "log")
+    test::ProgramRun simulate(const std::string& arguments, const std::string& name = "log")
     {
         return run(
             "-c " TAUT_SCENARIOS "/hall_violent.yaml --set rest=0 --set duration=1 -o " +
@@ -116,7 +101,7 @@ std::size_t checkPointTruth(const std::string& log, double tolerance)
 
 TEST_F(SimulateApp, WritesARawlogThatReadsBack)
 {
-    const ProgramRun r = simulate("");
+    const test::ProgramRun r = simulate("");
     ASSERT_EQ(r.exit_code, 0) << r.output;
     EXPECT_THAT(r.output, HasSubstr("200 IMU samples"));
     const Recording recording = read(file("log.rawlog"));
@@ -188,7 +173,7 @@ TEST_F(SimulateApp, FaultsReachTheReader)
 TEST_F(SimulateApp, ReplaysATrajectory)
 {
     ASSERT_EQ(simulate("--quiet --duration 3", "first").exit_code, 0);
-    const ProgramRun r = simulate(
+    const test::ProgramRun r = simulate(
         "--quiet --set motion.type=replay --set motion.smoothing=0.02 --set motion.file=" +
             file("first.gt.tum"),
         "again");
