@@ -253,6 +253,20 @@ TEST_F(OSMesaPicture, ExtentsOfMetresAndOfKilometresAreBothDrawn)
     }
 }
 
+TEST_F(OSMesaPicture, FarFromTheOriginThePathIsAsSharpAsNearIt)
+{
+    const RenderScene near = test::street();
+    RenderScene far = near;
+    const Vector3d offset(5000, -3000, 100);
+    for (auto& p : far.points) p += offset.cast<float>();
+    for (auto& pose : far.trajectory) pose.p += offset;
+    const auto here = draw(near, View::Follow).find(ofPath);
+    const auto there = draw(far, View::Follow).find(ofPath);
+    EXPECT_GT(here.count, 300);
+    EXPECT_NEAR(here.count, there.count, 0.02 * here.count);
+    EXPECT_LT((here.mean - there.mean).norm(), 0.5);
+}
+
 TEST_F(OSMesaPicture, TheCaptionIsInTheStripBelowWhateverItsLength)
 {
     RenderScene scene = test::hall(5);

@@ -140,7 +140,8 @@ Picture OSMesaRenderer::Studio::drawGround(
     const double z = setting.points.empty() ? extent(Vector3d::UnitZ()).low : setting.heights.low;
     mrpt::opengl::COpenGLScene scene;
     scene.insert(makeGrid(
-        extent(Vector3d::UnitX()), extent(Vector3d::UnitY()), z, setting.legend.grid_step));
+        extent(Vector3d::UnitX()), extent(Vector3d::UnitY()), z, setting.legend.grid_step,
+        setting.camera));
     return offscreen_.draw(scene, setting.camera).picture;
 }
 
@@ -160,7 +161,7 @@ Layer OSMesaRenderer::Studio::drawPath(
     const std::vector<Pose>& trajectory, const ViewCamera& camera, int supersampling)
 {
     const double pixel = supersampling * camera.metresPerPixel(camera.focus_depth);
-    Solids solids;
+    Solids solids(camera);
     solids.addPath(trajectory, 2.2 * pixel, kPathColor);
     solids.addAxes(trajectory.front(), 45 * pixel, 2 * pixel);
     solids.addSphere(trajectory.front().p, 6 * pixel, kStartColor);
@@ -170,6 +171,7 @@ Layer OSMesaRenderer::Studio::drawPath(
     light.ambient = {0.6F, 0.6F, 0.6F};
     light.diffuse = {0.6F, 0.6F, 0.6F};
     light.specular = {0, 0, 0};
+    light.direction = {0.4F, 0.5F, 0.768F};  // from behind the camera, upper left
     scene.insert(solids.object());
     return offscreen_.draw(scene, camera);
 }

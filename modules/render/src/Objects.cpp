@@ -24,52 +24,7 @@ std::array<Vector3d, 2> across(const Vector3d& axis)
     const Vector3d u = axis.cross(other).normalized();
     return {u, axis.cross(u)};
 }
-}  // namespace
 
-std::vector<mrpt::opengl::CPointCloudColoured::Ptr> makeClouds(
-    const PointCloud& points, const Span& heights, const ViewCamera& camera, double dot_size,
-    int supersampling)
-{
-    std::map<int, mrpt::opengl::CPointCloudColoured::Ptr> clouds;  // by size in pixels
-    const double least = 1.5 * supersampling, most = 8 * supersampling;
-    const double range = std::max(heights.size(), 1e-3);
-    for (const auto& p : points)
-    {
-        const double pixel = camera.metresPerPixel(camera.project(p.cast<double>()).z());
-        const auto size = static_cast<int>(std::lround(std::clamp(dot_size / pixel, least, most)));
-        auto& cloud = clouds[size];
-        if (!cloud) cloud = mrpt::opengl::CPointCloudColoured::Create();
-        const Rgb c = heightColor((static_cast<double>(p.z()) - heights.low) / range);
-        cloud->insertPoint({p.x(), p.y(), p.z(), c[0], c[1], c[2], 255});
-    }
-    std::vector<mrpt::opengl::CPointCloudColoured::Ptr> objects;
-    for (const auto& [size, cloud] : clouds)
-    {
-        cloud->enableVariablePointSize(false);
-        cloud->setPointSize(static_cast<float>(size));
-        objects.push_back(cloud);
-    }
-    return objects;
-}
-
-mrpt::opengl::CSetOfLines::Ptr makeGrid(const Span& x, const Span& y, double z, double step)
-{
-    auto lines = mrpt::opengl::CSetOfLines::Create();
-    lines->setColor_u8(150, 158, 170);
-    const auto first = [&](const Span& side) { return std::lround(side.low / step) - 1; };
-    const auto last = [&](const Span& side) { return std::lround(side.high / step) + 1; };
-    const auto at = [&](auto i) { return static_cast<double>(i) * step; };
-    for (auto i = first(x); i <= last(x); ++i)
-        lines->appendLine(at(i), at(first(y)), z, at(i), at(last(y)), z);
-    for (auto i = first(y); i <= last(y); ++i)
-        lines->appendLine(at(first(x)), at(i), z, at(last(x)), at(i), z);
-    return lines;
-}
-
-Solids::Solids() : triangles_(mrpt::opengl::CSetOfTriangles::Create()) {}
-
-namespace
-{
 struct Corner
 {
     Vector3d position, normal;
@@ -98,9 +53,64 @@ void addQuad(
 }
 }  // namespace
 
+std::vector<mrpt::opengl::CPointCloudColoured::Ptr> makeClouds(
+    const PointCloud& points, const Span& heights, const ViewCamera& camera, double dot_size,
+    int supersampling)
+{
+    std::map<int, mrpt::opengl::CPointCloudColoured::Ptr> clouds;  // by size in pixels
+    const double least = 1.5 * supersampling, most = 8 * supersampling;
+    const double range = std::max(heights.size(), 1e-3);
+    for (const auto& p : points)
+    {
+        const Vector3d seen = camera.inCamera(p.cast<double>());
+        const double pixel = camera.metresPerPixel(seen.z());
+        const auto size = static_cast<int>(std::lround(std::clamp(dot_size / pixel, least, most)));
+        auto& cloud = clouds[size];
+        if (!cloud) cloud = mrpt::opengl::CPointCloudColoured::Create();
+        const Rgb c = heightColor((static_cast<double>(p.z()) - heights.low) / range);
+        const auto [x, y, z] = toMrpt(seen);
+        cloud->insertPoint({x, y, z, c[0], c[1], c[2], 255});
+    }
+    std::vector<mrpt::opengl::CPointCloudColoured::Ptr> objects;
+    for (const auto& [size, cloud] : clouds)
+    {
+        cloud->enableVariablePointSize(false);
+        cloud->setPointSize(static_cast<float>(size));
+        objects.push_back(cloud);
+    }
+    return objects;
+}
+
+mrpt::opengl::CSetOfLines::Ptr makeGrid(
+    const Span& x, const Span& y, double z, double step, const ViewCamera& camera)
+{
+    auto lines = mrpt::opengl::CSetOfLines::Create();
+    lines->setColor_u8(150, 158, 170);
+    const auto first = [&](const Span& side) { return std::lround(side.low / step) - 1; };
+    const auto last = [&](const Span& side) { return std::lround(side.high / step) + 1; };
+    const auto add = [&](auto i0, auto j0, auto i1, auto j1)
+    {
+        const auto corner = [&](auto i, auto j) {
+            return camera.inCamera(
+                {static_cast<double>(i) * step, static_cast<double>(j) * step, z});
+        };
+        const Vector3d a = corner(i0, j0), b = corner(i1, j1);
+        lines->appendLine(a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
+    };
+    for (auto i = first(x); i <= last(x); ++i) add(i, first(y), i, last(y));
+    for (auto j = first(y); j <= last(y); ++j) add(first(x), j, last(x), j);
+    return lines;
+}
+
+Solids::Solids(const ViewCamera& camera)
+    : camera_(camera), triangles_(mrpt::opengl::CSetOfTriangles::Create())
+{
+}
+
 void Solids::addTube(const Vector3d& from, const Vector3d& to, double radius, const Rgb& color)
 {
-    const Vector3d along = to - from;
+    const Vector3d begin = camera_.inCamera(from), end = camera_.inCamera(to);
+    const Vector3d along = end - begin;
     if (along.norm() < 1e-6) return;
     const auto [u, v] = across(along.normalized());
     const auto direction = [&, u = u, v = v](int slice)
@@ -113,8 +123,8 @@ void Solids::addTube(const Vector3d& from, const Vector3d& to, double radius, co
         const Vector3d a = direction(i), b = direction(i + 1);
         addQuad(
             *triangles_,
-            {Corner{from + radius * a, a}, Corner{to + radius * a, a}, Corner{to + radius * b, b},
-             Corner{from + radius * b, b}},
+            {Corner{begin + radius * a, a}, Corner{end + radius * a, a},
+             Corner{end + radius * b, b}, Corner{begin + radius * b, b}},
             color);
     }
 }
@@ -122,12 +132,13 @@ void Solids::addTube(const Vector3d& from, const Vector3d& to, double radius, co
 void Solids::addSphere(const Vector3d& center, double radius, const Rgb& color)
 {
     constexpr int kRings = kSlices / 2;
+    const Vector3d middle = camera_.inCamera(center);
     const auto corner = [&](int ring, int slice)
     {
         const double polar = M_PI * ring / kRings, angle = 2 * M_PI * slice / kSlices;
         const Vector3d n(
             std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle), std::cos(polar));
-        return Corner{center + radius * n, n};
+        return Corner{middle + radius * n, n};
     };
     for (int ring = 0; ring < kRings; ++ring)
         for (int slice = 0; slice < kSlices; ++slice)

@@ -11,7 +11,7 @@
 #include "taut/render/ViewCamera.h"
 
 /** \file Objects.h
- * What is put into a scene, as MRPT's objects. */
+ * What is put into a scene, as MRPT's objects in the frame of the camera. */
 namespace taut
 {
 /** The points coloured by height, as dots of that size [m], within reasonable bounds in pixels: one
@@ -22,13 +22,14 @@ std::vector<mrpt::opengl::CPointCloudColoured::Ptr> makeClouds(
 
 /** Lines at the multiples of `step` on the plane at height z, over that ground and one step more.
  */
-mrpt::opengl::CSetOfLines::Ptr makeGrid(const Span& x, const Span& y, double z, double step);
+mrpt::opengl::CSetOfLines::Ptr makeGrid(
+    const Span& x, const Span& y, double z, double step, const ViewCamera& camera);
 
-/** Round solids made of triangles. MRPT's lines have no width. */
+/** Round solids made of triangles, given in the world frame. MRPT's lines have no width. */
 class Solids
 {
  public:
-    Solids();
+    explicit Solids(const ViewCamera& camera);
 
     void addSphere(const Vector3d& center, double radius, const Rgb& color);
     void addTube(const Vector3d& from, const Vector3d& to, double radius, const Rgb& color);
@@ -42,6 +43,7 @@ class Solids
     const mrpt::opengl::CSetOfTriangles::Ptr& object() const { return triangles_; }
 
  private:
+    ViewCamera camera_;
     mrpt::opengl::CSetOfTriangles::Ptr triangles_;
 };
 }  // namespace taut

@@ -2,7 +2,6 @@
 
 #include <GL/osmesa.h>
 #include <dlfcn.h>
-#include <mrpt/poses/CPose3D.h>
 
 #include <algorithm>
 #include <array>
@@ -27,15 +26,11 @@ void requireFunctionsOfOSMesa()
             ", not from libOSMesa: link libOSMesa directly and no other OpenGL library");
 }
 
+/** A camera at the origin that looks along z, y down: where the objects are drawn. */
 mrpt::opengl::CCamera toMrpt(const ViewCamera& camera)
 {
     mrpt::opengl::CCamera result;
-    mrpt::math::CMatrixDouble44 T;
-    T.setIdentity();
-    T.block<3, 3>(0, 0) = camera.T_world_camera.R;
-    T.block<3, 1>(0, 3) = camera.T_world_camera.p;
     result.set6DOFMode(true);
-    result.setPose(mrpt::poses::CPose3D(T));
     const auto [width, height] = camera.size;
     if (camera.orthographic)
     {

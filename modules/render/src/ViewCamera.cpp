@@ -173,7 +173,7 @@ Span extentAlong(
 
 Vector3d ViewCamera::project(const Vector3d& p_world) const
 {
-    const Vector3d p = T_world_camera.inverse() * p_world;
+    const Vector3d p = inCamera(p_world);
     const double pixels_per_metre = 1 / metresPerPixel(p.z());
     return {
         size.width / 2.0 + p.x() * pixels_per_metre, size.height / 2.0 + p.y() * pixels_per_metre,

@@ -24,6 +24,12 @@ struct ViewCamera
     double near_depth = 1, far_depth = 2;  //!< [m] only what lies between is shown
     double focus_depth = 1;                //!< [m] of what the view is about
 
+    /** The point in the frame of the camera. */
+    Vector3d inCamera(const Vector3d& p_world) const
+    {
+        return T_world_camera.R.transpose() * (p_world - T_world_camera.p);
+    }
+
     /** Pixel (u to the right, v down, from the upper left corner of the picture) and depth [m]. */
     Vector3d project(const Vector3d& p_world) const;
 
