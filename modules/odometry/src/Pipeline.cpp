@@ -52,7 +52,7 @@ Vector3d gravityFrom(const std::vector<ScanResult>& results)
 }  // namespace
 
 Pipeline::Pipeline(
-    const OdometryConfig& config, Executor& executor, WarningSink warn, ResultSink results)
+    const OdometryConfig& config, Executor& executor, const WarningSink& warn, ResultSink results)
     : config_(config),
       warn_(warn),
       results_(std::move(results)),

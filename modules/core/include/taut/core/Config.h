@@ -57,6 +57,7 @@ class ConfigSection
         if (it == names.end())
         {
             std::vector<std::string> known;
+            known.reserve(names.size());
             for (const auto& entry : names) known.push_back(entry.first);
             throwUnknownChoice(name, text, known);
         }

@@ -16,7 +16,8 @@ class Pipeline
     using ResultSink = std::function<void(const Scan&, const ScanResult&)>;
 
     Pipeline(
-        const OdometryConfig& config, Executor& executor, WarningSink warn, ResultSink results);
+        const OdometryConfig& config, Executor& executor, const WarningSink& warn,
+        ResultSink results);
 
     void add(const ImuSample& sample);
     void add(Scan scan);
