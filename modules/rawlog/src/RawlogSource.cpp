@@ -322,7 +322,8 @@ std::optional<Measurement> RawlogSource::Impl::convertLidar(const CObservation& 
         if (scan.already_undistorted && !std::exchange(warned_undistorted, true))
             warn(
                 t, "scan_undistorted",
-                "all points of a scan have the same time: it is taken as undistorted already");
+                "the points of a scan have no times, or all the same: it is taken as undistorted "
+                "already");
         progress.scans++;
         return scan;
     }

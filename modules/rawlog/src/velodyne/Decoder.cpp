@@ -134,7 +134,7 @@ PacketInfo decodePacket(
     const double rate = turningRate(packet, pattern, blocks_per_firing);
     for (int block = 0; block < kBlocks; block++)
     {
-        const double block_time = block / blocks_per_firing * pattern.blockPeriod();
+        const int firing = block / blocks_per_firing;
         const double block_azimuth = blockAzimuth(packet, block) * kAzimuthUnit;
         for (int slot = 0; slot < kReturnsPerBlock; slot++)
         {
@@ -142,14 +142,15 @@ PacketInfo decodePacket(
             const auto range = read16(cell);
             if (range == 0 || (dual && block % 2 == 1 && repeatsFirstOfPair(packet, block, slot)))
                 continue;
-            const int laser = slot % pattern.lasers;
+            const int laser = slot % pattern.lasers, sequence = slot / pattern.lasers;
             const double in_block =
-                slot / pattern.lasers * pattern.sequence_period + laser * pattern.laser_period;
+                sequence * pattern.sequence_period + laser * pattern.laser_period;
             const double azimuth = std::fmod(block_azimuth + rate * in_block, 360);
             Return r;
             r.position = toPoint(calibration[laser], range * kRangeUnit, azimuth * kDegree);
             r.azimuth = static_cast<float>(azimuth);
-            r.offset = static_cast<std::int32_t>(std::lround(block_time + in_block));
+            r.offset =
+                static_cast<std::int32_t>(std::lround(firing * pattern.blockPeriod() + in_block));
             r.laser = static_cast<std::uint8_t>(laser);
             r.intensity = cell[2];
             r.block = static_cast<std::uint8_t>(block);
