@@ -81,29 +81,4 @@ TEST_F(RawlogSourceTest, PassesOverWhatItDoesNotUnderstand)
     EXPECT_EQ(content.scans.size(), 2u);
     EXPECT_FALSE(content.incomplete);
 }
-
-TEST_F(RawlogSourceTest, ReadsTheRecordings)
-{
-    struct Expected
-    {
-        const char* file;
-        std::size_t scans, imu;
-        int rings;
-    };
-    for (const auto& e :
-         {Expected{"hall_violent.rawlog", 450, 9021, 16},
-          Expected{"handheld_real_imu.rawlog", 449, 12858, 32},
-          Expected{"street_hdl64.rawlog", 20, 0, 64},
-          Expected{"tripod_vlp16_imu.rawlog", 101, 1748, 16}})
-    {
-        const auto file = dataFolder() / e.file;
-        if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recording at " << file;
-        const auto log = readAll(file.string());
-        EXPECT_EQ(log.scans.size(), e.scans);
-        EXPECT_EQ(log.imu.size(), e.imu);
-        EXPECT_EQ(log.scans.back().rings, e.rings);
-        EXPECT_FALSE(log.incomplete);
-        for (const auto& w : log.warnings.kept()) ADD_FAILURE() << w.kind << ": " << w.text;
-    }
-}
 }  // namespace taut::test
