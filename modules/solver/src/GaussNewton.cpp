@@ -42,9 +42,10 @@ SolveReport GaussNewton::solve(LeastSquaresProblem& problem) const
         ProblemMatrix A = H;
         A.diagonal() *= 1 + damping;
         const Eigen::LLT<ProblemMatrix> llt(A);
-        if (llt.info() != Eigen::Success || !g.allFinite())
-            throw std::runtime_error("the normal equations are not positive definite");
         ProblemVector step = llt.solve(-g);
+        if (llt.info() != Eigen::Success || !step.allFinite())
+            throw std::runtime_error(
+                "the normal equations are not positive definite or not finite");
         bound(step, problem.maxStep());
         report.last_step = std::sqrt(std::max(0.0, step.dot(H * step)));
 
@@ -52,7 +53,7 @@ SolveReport GaussNewton::solve(LeastSquaresProblem& problem) const
         problem.retract(step);
         const double next = problem.linearize(H_next, g_next);
         report.evaluations++;
-        if (next > cost + 1e-9 * std::abs(cost))
+        if (!(next <= cost + 1e-9 * std::abs(cost)))  // raised, or not a number
         {
             problem.restore();
             damping = damping == 0 ? config.first_damping : damping * 10;

@@ -1,6 +1,7 @@
 #include "taut/solver/NloptSolver.h"
 
 #include <Eigen/Cholesky>
+#include <cmath>
 #include <nlopt.hpp>
 #include <stdexcept>
 #include <vector>
@@ -71,8 +72,9 @@ SolveReport NloptSolver::solve(LeastSquaresProblem& problem) const
     problem.save();
 
     WhitenedProblem whitened{problem, Eigen::LLT<ProblemMatrix>(H)};
-    if (whitened.llt.info() != Eigen::Success)
-        throw std::runtime_error("the normal equations are not positive definite");
+    // Eigen's factorisation lets NaN pass, and NLopt would search on among them.
+    if (whitened.llt.info() != Eigen::Success || !H.allFinite() || !g.allFinite())
+        throw std::runtime_error("the normal equations are not positive definite or not finite");
 
     nlopt::opt opt(algorithmOf(config.algorithm), static_cast<unsigned>(n));
     opt.set_min_objective(&WhitenedProblem::evaluate, &whitened);
@@ -89,6 +91,7 @@ SolveReport NloptSolver::solve(LeastSquaresProblem& problem) const
     {
         report.converged = true;  // z is the best found: as exact as doubles allow
     }
+    if (!std::isfinite(cost)) throw std::runtime_error("the cost at NLopt's result is not finite");
     const ProblemVector delta = whitened.step(z);
     problem.restore();
     problem.retract(delta);
