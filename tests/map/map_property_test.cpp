@@ -259,5 +259,5 @@ TEST_P(AnyMap, RejectsAWindowOfNoSize)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Of, AnyMap, ::testing::Values("taut::KdTreeMap"),
+    Of, AnyMap, ::testing::Values("taut::KdTreeMap", "taut::OctreeMap"),
     [](const auto& test) { return std::string(test.param).substr(6); });

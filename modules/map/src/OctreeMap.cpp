@@ -37,6 +37,17 @@ OctreeMap::OctreeMap()
     clear();
 }
 
+OctreeMap::OctreeMap(const OctreeMap& other)
+    : Map(other),
+      config(other.config),
+      tree_(std::make_unique<StatisticsTree>(*other.tree_)),
+      levels_(other.levels_),
+      insertions_(other.insertions_),
+      blocks_(other.blocks_),
+      last_center_(other.last_center_)
+{
+}
+
 void OctreeMap::configure(ConfigSection& s)
 {
     s.key("leaf_size", config.leaf_size, {0.01, 10}, "m, edge of the smallest node");
@@ -130,7 +141,7 @@ void OctreeMap::slide(const Vector3d& center_world)
         const octomap::OcTreeKey key = unpack(*it);
         if (outside(key, blockDepth()))
         {
-            tree_->deleteNode(key, blockDepth());
+            tree_->remove(key, blockDepth());
             it = blocks_.erase(it);
         }
         else

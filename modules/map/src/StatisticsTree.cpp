@@ -31,6 +31,44 @@ Eigen::Matrix3d PointStatistics::scatter() const
     return m - sum * sum.transpose() / count;
 }
 
+StatisticsNode::StatisticsNode(const StatisticsNode& other)
+    : octomap::OcTreeDataNode<PointStatistics>(other.value)
+{
+    if (other.children == nullptr) return;
+    allocChildren();
+    for (int i = 0; i < 8; i++)
+        if (other.children[i] != nullptr)
+            children[i] =
+                new StatisticsNode(*static_cast<const StatisticsNode*>(other.children[i]));
+}
+
+StatisticsNode::~StatisticsNode()
+{
+    if (children == nullptr) return;
+    for (int i = 0; i < 8; i++) delete static_cast<StatisticsNode*>(children[i]);
+    delete[] children;
+    children = nullptr;
+}
+
+std::size_t StatisticsNode::subtreeSize() const
+{
+    std::size_t size = 1;
+    if (children != nullptr)
+        for (int i = 0; i < 8; i++)
+            if (children[i] != nullptr)
+                size += static_cast<const StatisticsNode*>(children[i])->subtreeSize();
+    return size;
+}
+
+void StatisticsTree::remove(const octomap::OcTreeKey& key, unsigned depth)
+{
+    const StatisticsNode* node = Cursor(*this).find(key, depth);
+    if (node == nullptr) return;
+    tree_size -= node->subtreeSize() - 1;  // octomap counts the node and its ancestors only
+    deleteNode(key, depth);
+    if (!nodeHasChildren(root)) clear();
+}
+
 unsigned StatisticsTree::Cursor::sharedDepth(const octomap::OcTreeKey& key) const
 {
     const unsigned differing = static_cast<unsigned>(key[0] ^ key_[0]) |

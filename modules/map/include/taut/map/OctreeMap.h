@@ -41,6 +41,8 @@ class OctreeMap : public Map
     DEFINE_MRPT_OBJECT(OctreeMap, taut)
  public:
     OctreeMap();
+    OctreeMap(const OctreeMap& other);
+    OctreeMap& operator=(const OctreeMap&) = delete;
     void configure(ConfigSection& section) override;
     void match(
         const std::vector<MapPoint>& queries, std::vector<Correspondence>& correspondences,

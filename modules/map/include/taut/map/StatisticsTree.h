@@ -33,6 +33,15 @@ struct PointStatistics
 class StatisticsNode : public octomap::OcTreeDataNode<PointStatistics>
 {
  public:
+    StatisticsNode() = default;
+    StatisticsNode(const StatisticsNode& other);  //!< copies the whole subtree
+    StatisticsNode& operator=(const StatisticsNode&) = delete;
+    /** Deletes the children too, which octomap leaves behind when it deletes an inner node. */
+    ~StatisticsNode();
+
+    /** Number of nodes from this one down. */
+    std::size_t subtreeSize() const;
+
     PointStatistics& statistics() { return value; }
     const PointStatistics& statistics() const { return value; }
 
@@ -68,6 +77,9 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
         octomap::OcTreeKey key_;
         unsigned depth_ = 0;  // of the last node of the way that exists
     };
+
+    /** Deletes the node of a key at a depth with all below it, and ancestors that become empty. */
+    void remove(const octomap::OcTreeKey& key, unsigned depth);
 
     /** Adds statistics to the leaf of a key and to its ancestors from the given depth down, unless
      * the leaf holds `capacity` points already. False if it does. */

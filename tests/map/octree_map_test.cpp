@@ -1,0 +1,165 @@
+#include "taut/map/OctreeMap.h"
+
+#include <gtest/gtest.h>
+
+#include "surfaces.h"
+
+using namespace taut;
+using namespace taut::test;
+
+namespace
+{
+Correspondence matchOne(const OctreeMap& map, const Vector3d& query, FeatureKind kind)
+{
+    Executor executor(1);
+    std::vector<Correspondence> found;
+    map.match({{query, kind}}, found, executor);
+    return found.at(0);
+}
+
+void see(OctreeMap& map, const Patch& patch, int scans = 10, unsigned seed = 1)
+{
+    Random random(seed);
+    for (int i = 0; i < scans; i++) map.insert(patch.planePoints(random, 2000, FeatureKind::Any));
+}
+
+Patch floorAt(double height, double noise)
+{
+    return {{0.3, 0.2, height}, Vector3d::UnitX(), Vector3d::UnitY(), 5, noise};
+}
+}  // namespace
+
+TEST(OctreeMap, SigmaIsTheThicknessOfTheSurface)
+{
+    for (const double noise : {0.01, 0.03})
+    {
+        OctreeMap map;
+        const Patch patch = floorAt(1, noise);
+        see(map, patch);
+        Random random(2);
+        double sum = 0;
+        for (int i = 0; i < 100; i++)
+        {
+            const Correspondence c = matchOne(map, patch.at(random, 0.5), FeatureKind::Any);
+            ASSERT_EQ(c.surface, Surface::Plane);
+            sum += c.sigma / 100;
+        }
+        EXPECT_NEAR(sum, noise, 0.15 * noise);
+    }
+}
+
+TEST(OctreeMap, AThinSurfaceIsNotBelievedToBeThinner)
+{
+    OctreeMap map;
+    see(map, floorAt(1, 0));
+    const Correspondence c = matchOne(map, {0.5, 0.5, 1}, FeatureKind::Any);
+    ASSERT_EQ(c.surface, Surface::Plane);
+    EXPECT_GE(c.sigma, map.config.min_sigma);
+    EXPECT_LT(c.sigma, 1.5 * map.config.min_sigma);
+}
+
+TEST(OctreeMap, MatchesTheLargestWindowThatIsAsFlatAsTheSmallest)
+{
+    // In the middle of a large plane the normal comes from a large window: far better than a window
+    // of a quarter of a metre could give it. Near a step only the small ones are flat.
+    OctreeMap map;
+    see(map, floorAt(1, 0.02));
+    Random random(3);
+    for (int i = 0; i < 50; i++)
+    {
+        const Vector3d query(random.uniform(-2, 2), random.uniform(-2, 2), 1);
+        const Correspondence c = matchOne(map, query, FeatureKind::Any);
+        ASSERT_EQ(c.surface, Surface::Plane);
+        EXPECT_GT(std::abs(c.direction.z()), std::cos(0.5 * M_PI / 180));
+    }
+
+    OctreeMap step;
+    Patch left = floorAt(1, 0.01), right = floorAt(1.4, 0.01);
+    left.center.x() = -5;
+    right.center.x() = 5;
+    see(step, left);
+    see(step, right, 10, 4);
+    int planes = 0;
+    for (int i = 0; i < 50; i++)
+    {
+        const Vector3d query(random.uniform(0.3, 0.6), random.uniform(-2, 2), 1.4);
+        const Correspondence c = matchOne(step, query, FeatureKind::Any);
+        if (c.surface != Surface::Plane) continue;
+        planes++;
+        EXPECT_GT(std::abs(c.direction.z()), std::cos(5 * M_PI / 180));
+        EXPECT_LT(std::abs(c.direction.dot(query - c.point)), 0.03);
+    }
+    EXPECT_GT(planes, 40);
+}
+
+TEST(OctreeMap, DoesNotMatchBeyondTheGate)
+{
+    OctreeMap map;
+    map.config.gate = 0.1;
+    see(map, floorAt(1, 0.01));
+    EXPECT_EQ(matchOne(map, {0.5, 0.5, 1.05}, FeatureKind::Any).surface, Surface::Plane);
+    EXPECT_EQ(matchOne(map, {0.5, 0.5, 1.15}, FeatureKind::Any).surface, Surface::None);
+}
+
+TEST(OctreeMap, AScatteredCloudIsNoSurface)
+{
+    OctreeMap map;
+    Random random(5);
+    std::vector<MapPoint> cloud;
+    for (int i = 0; i < 20000; i++)
+        cloud.push_back(
+            {{random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)},
+             FeatureKind::Any});
+    map.insert(cloud);
+    int planes = 0;
+    for (int i = 0; i < 200; i++)
+        planes += matchOne(map, random.vector(1), FeatureKind::Any).surface != Surface::None;
+    EXPECT_LT(planes, 10);
+}
+
+TEST(OctreeMap, MatchesAWireAsALineIfAskedTo)
+{
+    const Patch wire = tiltedPatch({1, 2, 3});
+    for (const bool lines : {false, true})
+    {
+        OctreeMap map;
+        map.config.lines = lines;
+        Random random(6);
+        for (int i = 0; i < 10; i++) map.insert(wire.linePoints(random, 200));
+        int found = 0;
+        for (int i = 0; i < 50; i++)
+        {
+            const Vector3d query = wire.center + random.uniform(-3, 3) * wire.u;
+            const Correspondence c = matchOne(map, query, FeatureKind::Edge);
+            if (c.surface == Surface::None) continue;
+            found++;
+            ASSERT_EQ(c.surface, Surface::Line);
+            EXPECT_GT(std::abs(c.direction.dot(wire.u)), std::cos(10 * M_PI / 180));
+            EXPECT_LT(wire.u.cross(c.point - wire.center).norm(), 0.03);
+        }
+        if (lines)
+            EXPECT_GT(found, 40);
+        else
+            EXPECT_EQ(found, 0);
+    }
+}
+
+TEST(OctreeMap, LearnsASurfaceThatIsSeenMoreOften)
+{
+    OctreeMap map;
+    const Patch patch = floorAt(1, 0.01);
+    Random random(7);
+    map.insert(patch.planePoints(random, 5, FeatureKind::Any));  // fewer than any window needs
+    const auto known = [&]
+    {
+        int planes = 0;
+        Random where(8);
+        for (int i = 0; i < 100; i++)
+            planes +=
+                matchOne(map, patch.at(where, 0.8), FeatureKind::Any).surface == Surface::Plane;
+        return planes;
+    };
+    EXPECT_EQ(known(), 0);
+    see(map, patch);
+    EXPECT_GT(known(), 95);
+}
