@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 IMPLEMENTS_MRPT_OBJECT(OctreeMap, taut::Map, taut)
 
@@ -13,6 +14,7 @@ namespace
 constexpr unsigned kTreeDepth = 16;
 constexpr std::uint32_t kMaxPatience = 7;  // insertions
 constexpr double kBlockSize = 8.0;         // [m] about: unit of forgetting
+constexpr int kRecenterKeys = 16384;       // leaves from the origin: half of what keys can name
 
 std::uint64_t pack(std::uint16_t x, std::uint16_t y, std::uint16_t z)
 {
@@ -44,7 +46,8 @@ OctreeMap::OctreeMap(const OctreeMap& other)
       levels_(other.levels_),
       insertions_(other.insertions_),
       blocks_(other.blocks_),
-      last_center_(other.last_center_)
+      last_center_(other.last_center_),
+      origin_(other.origin_)
 {
 }
 
@@ -79,6 +82,7 @@ void OctreeMap::clear()
     insertions_ = 0;
     lookups_.clear();
     last_center_.setConstant(1e300);
+    origin_.setZero();
 }
 
 unsigned OctreeMap::depthOf(int level) const
@@ -97,11 +101,12 @@ void OctreeMap::insert(const std::vector<MapPoint>& points)
     // Points of one leaf are summed first: one descent of the tree for each leaf touched.
     WindowIndex index;
     index.reserve(points.size());
-    std::vector<std::pair<std::uint64_t, PointStatistics>> leaves;
+    Leaves leaves;
     for (const MapPoint& p : points)
     {
         octomap::OcTreeKey key;
-        if (!p.position.allFinite() || !tree_->coordToKeyChecked(toOctomap(p.position), key))
+        if (!p.position.allFinite() ||
+            !tree_->coordToKeyChecked(toOctomap(p.position - origin_), key))
             continue;
         const std::uint64_t packed = pack(key[0], key[1], key[2]);
         const auto [it, added] =
@@ -109,19 +114,24 @@ void OctreeMap::insert(const std::vector<MapPoint>& points)
         if (added) leaves.push_back({packed, {}});
         leaves[it->second].second.add(p.position);
     }
+    insertLeaves(leaves, config.leaf_capacity);
+    insertions_++;
+}
+
+void OctreeMap::insertLeaves(const Leaves& leaves, double capacity)
+{
     const unsigned from_depth = depthOf(config.scales - 1);
     const unsigned block_shift = kTreeDepth - blockDepth();
     StatisticsTree::Cursor cursor(*tree_);
     for (const auto& [packed, statistics] : leaves)
     {
         const octomap::OcTreeKey key = unpack(packed);
-        if (!tree_->add(cursor, key, statistics, from_depth, config.leaf_capacity)) continue;
+        if (!tree_->add(cursor, key, statistics, from_depth, capacity)) continue;
         blocks_.insert(pack(
             static_cast<std::uint16_t>(key[0] >> block_shift << block_shift),
             static_cast<std::uint16_t>(key[1] >> block_shift << block_shift),
             static_cast<std::uint16_t>(key[2] >> block_shift << block_shift)));
     }
-    insertions_++;
 }
 
 void OctreeMap::slide(const Vector3d& center_world)
@@ -133,7 +143,7 @@ void OctreeMap::slide(const Vector3d& center_world)
     const auto outside = [&](const octomap::OcTreeKey& key, unsigned depth)
     {
         const octomap::point3d c = tree_->keyToCoord(key, depth);
-        const Vector3d d = Vector3d(c.x(), c.y(), c.z()) - center_world;
+        const Vector3d d = Vector3d(c.x(), c.y(), c.z()) + origin_ - center_world;
         return d.cwiseAbs().maxCoeff() > reach;
     };
     for (auto it = blocks_.begin(); it != blocks_.end();)
@@ -162,6 +172,37 @@ void OctreeMap::slide(const Vector3d& center_world)
                 ++it;
             }
         }
+    if ((center_world - origin_).cwiseAbs().maxCoeff() > kRecenterKeys * config.leaf_size)
+        recenter(center_world);
+}
+
+void OctreeMap::recenter(const Vector3d& center_world)
+{
+    Leaves leaves;
+    const double edge = config.leaf_size * (1 << (kTreeDepth - blockDepth()));
+    std::array<int, 3> shift{};  // of the keys, by whole blocks: every node keeps its content
+    for (int i = 0; i < 3; i++)
+    {
+        const double blocks = std::round((center_world[i] - origin_[i]) / edge);
+        shift[static_cast<std::size_t>(i)] =
+            static_cast<int>(blocks * (1 << (kTreeDepth - blockDepth())));
+        origin_[i] += blocks * edge;
+    }
+    const auto end = tree_->end_leafs();
+    for (auto it = tree_->begin_leafs(); it != end; ++it)
+    {
+        const octomap::OcTreeKey key = it.getKey();
+        leaves.push_back(
+            {pack(
+                 static_cast<std::uint16_t>(key[0] - shift[0]),
+                 static_cast<std::uint16_t>(key[1] - shift[1]),
+                 static_cast<std::uint16_t>(key[2] - shift[2])),
+             it->statistics()});
+    }
+    tree_ = std::make_unique<StatisticsTree>(config.leaf_size);
+    levels_.assign(levels_.size(), {});
+    blocks_.clear();
+    insertLeaves(leaves, std::numeric_limits<double>::infinity());
 }
 
 bool OctreeMap::cornerOf(const Vector3d& p, int level, std::array<std::uint16_t, 3>& corner) const
@@ -170,7 +211,7 @@ bool OctreeMap::cornerOf(const Vector3d& p, int level, std::array<std::uint16_t,
     const double edge = config.leaf_size * (1 << level);
     for (int i = 0; i < 3; i++)
     {
-        const double nearest = std::floor(p[i] / edge + 0.5) * (1 << level) + 32768.0;
+        const double nearest = std::floor((p[i] - origin_[i]) / edge + 0.5) * (1 << level) + 32768;
         if (!(nearest >= 256 && nearest < 65280)) return false;
         corner[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(nearest);
     }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "taut/core/Map.h"
@@ -100,6 +101,10 @@ class OctreeMap : public Map
     };
     static constexpr std::uint32_t kNoWindow = 0xffffffff;
 
+    using Leaves = std::vector<std::pair<std::uint64_t, PointStatistics>>;  // by packed key
+
+    void insertLeaves(const Leaves& leaves, double capacity);
+    void recenter(const Vector3d& center_world);
     bool cornerOf(const Vector3d& p, int level, std::array<std::uint16_t, 3>& corner) const;
     std::uint32_t windowAt(Level& level, const std::array<std::uint16_t, 3>& corner) const;
     void refresh(Window& window, int level, StatisticsTree::Cursor& cursor) const;
@@ -123,5 +128,7 @@ class OctreeMap : public Map
     std::uint32_t insertions_ = 0;
     tsl::robin_set<std::uint64_t, KeyHash> blocks_;  // coarse nodes that exist, for slide()
     Vector3d last_center_ = Vector3d::Constant(1e300);
+    /** Where the keys begin [m]: octomap names 2^16 leaves a side, which moves with the body. */
+    Vector3d origin_ = Vector3d::Zero();
 };
 }  // namespace taut
