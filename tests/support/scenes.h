@@ -22,6 +22,15 @@ struct Scene
     Box room{{-7, -5, -1.2}, {9, 6, 2.4}};
     std::vector<Box> obstacles;
 
+    /** The same scene with its origin at a point of it. */
+    Scene seenFrom(const Vector3d& origin) const
+    {
+        Scene moved = *this;
+        moved.room = {room.min - origin, room.max - origin};
+        for (Box& box : moved.obstacles) box = {box.min - origin, box.max - origin};
+        return moved;
+    }
+
     /** Distance along a unit direction from the origin to the first wall. */
     double range(const Vector3d& direction) const
     {

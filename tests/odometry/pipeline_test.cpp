@@ -1,0 +1,322 @@
+#include "taut/odometry/Pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "recording.h"
+#include "taut/core/WarningLog.h"
+#include "taut/odometry/registerAll.h"
+
+using namespace taut;
+using namespace taut::test;
+
+namespace
+{
+struct Streams
+{
+    Recording recording;
+    ImuSamples imu;
+    std::vector<Scan> scans;
+};
+
+/** The recording of a brisk motion by hand, made once. */
+const Streams& hand()
+{
+    static const Streams streams = []
+    {
+        const Recording r;
+        return Streams{r, r.imu(), r.scans()};
+    }();
+    return streams;
+}
+
+struct Outcome
+{
+    WarningLog log;
+    std::vector<ScanResult> results;
+    bool with_imu = false;
+    std::optional<Initialization> initialization;
+    std::size_t map_size = 0;
+
+    std::size_t warnings() const { return log.counts().size(); }
+
+    /** Root mean square of the position's error over all scans [m]. The estimated world is the true
+     * one: both begin at the first pose. */
+    double error(const Recording& truth) const
+    {
+        double sum = 0;
+        for (const ScanResult& r : results)
+        {
+            const NavState& x = r.estimate.state;
+            sum += (x.T_world_imu.p - truth.truth(x.t).T_world_imu.p).squaredNorm();
+        }
+        return std::sqrt(sum / static_cast<double>(results.size()));
+    }
+};
+
+/** Feeds both streams in the order of time, as a player would. */
+Outcome run(const Streams& streams, const std::string& estimation = "{}", int threads = 1)
+{
+    registerAll();
+    ConfigSection root(mrpt::containers::yaml::FromText(
+        "initialization: {rest_duration: 1.2, min_rest: 0.5}\n"
+        "lidar: {max_range: 30}\n"
+        "estimation: " +
+        estimation + "\n"));
+    const OdometryConfig config = OdometryConfig::read(root);
+    root.rejectUnknown();
+    Executor executor(threads);
+    Outcome out;
+    Pipeline pipeline(
+        config, executor, out.log.sink(),
+        [&](const Scan&, const ScanResult& result) { out.results.push_back(result); });
+    auto sample = streams.imu.begin();
+    for (const Scan& scan : streams.scans)
+    {
+        for (; sample != streams.imu.end() && sample->t <= scan.end; ++sample)
+            pipeline.add(*sample);
+        pipeline.add(scan);
+    }
+    for (; sample != streams.imu.end(); ++sample) pipeline.add(*sample);
+    pipeline.finish();
+    out.with_imu = pipeline.withImu();
+    out.initialization = pipeline.initialization();
+    out.map_size = config.map->size();
+    return out;
+}
+
+void expectEqual(const Outcome& a, const Outcome& b)
+{
+    ASSERT_EQ(a.results.size(), b.results.size());
+    for (std::size_t i = 0; i < a.results.size(); i++)
+    {
+        const NavEstimate &x = a.results[i].estimate, &y = b.results[i].estimate;
+        EXPECT_EQ(x.state.T_world_imu.p, y.state.T_world_imu.p);
+        EXPECT_EQ(x.state.T_world_imu.R, y.state.T_world_imu.R);
+        EXPECT_EQ(x.state.bias_gyro, y.state.bias_gyro);
+        EXPECT_EQ(x.covariance, y.covariance);
+        EXPECT_EQ(a.results[i].points, b.results[i].points);
+    }
+}
+}  // namespace
+
+TEST(Pipeline, FollowsAMotionByHandToMillimetres)
+{
+    for (const std::string mode : {"bridge", "iterated", "iterated-imu", "imu"})
+    {
+        const Outcome done = run(hand(), "{undistortion: " + mode + "}");
+        EXPECT_LT(done.error(hand().recording), 0.006) << mode;
+        RecordProperty("ate_mm_" + mode, std::to_string(1e3 * done.error(hand().recording)));
+        EXPECT_EQ(done.results.size(), hand().scans.size()) << mode;
+        EXPECT_EQ(done.warnings(), 0u) << mode;
+        EXPECT_TRUE(done.with_imu);
+        EXPECT_TRUE(done.initialization->at_rest);
+        for (const ScanResult& r : done.results)
+        {
+            EXPECT_EQ(r.lidar_used, &r != &done.results.front());  // the first has no map
+            EXPECT_GT(r.estimate.covariance.diagonal().minCoeff(), 0);
+        }
+    }
+}
+
+TEST(Pipeline, WithoutUndistortionTheErrorIsManyTimesLarger)
+{
+    const double none = run(hand(), "{undistortion: none}").error(hand().recording);
+    const double bridge = run(hand(), "{undistortion: bridge}").error(hand().recording);
+    EXPECT_GT(none, 4 * bridge);
+}
+
+TEST(Pipeline, EstimatesVelocityAndGyroBias)
+{
+    const Outcome done = run(hand());
+    const NavState& x = done.results.back().estimate.state;
+    const NavState truth = hand().recording.truth(x.t);
+    EXPECT_LT((x.v_world - truth.v_world).norm(), 0.05);
+    EXPECT_LT((x.bias_gyro - truth.bias_gyro).norm(), 2e-3);
+    EXPECT_LT(logSO3(x.T_world_imu.R.transpose() * truth.T_world_imu.R).norm(), 5e-3);
+}
+
+TEST(Pipeline, IsBitEqualWithAnyNumberOfThreads)
+{
+    Streams first = hand();
+    first.scans.resize(25);
+    expectEqual(run(first, "{}", 1), run(first, "{}", 2));
+}
+
+TEST(Pipeline, WritesPointsWhereTheyWere)
+{
+    const Outcome done = run(hand());
+    const Box room = Recording::room().room;
+    std::size_t outside = 0, all = 0;
+    for (const ScanResult& r : done.results)
+        for (const Vector3d& p : r.points)
+        {
+            all++;
+            const double beyond = std::max((p - room.max).maxCoeff(), (room.min - p).maxCoeff());
+            outside += beyond > 0.05;  // five times the noise of a range
+        }
+    EXPECT_GT(all, hand().scans.size() * 3000);
+    EXPECT_LT(static_cast<double>(outside), 1e-3 * static_cast<double>(all));
+}
+
+TEST(Pipeline, ScansBeforeTheImuAreLeftOut)
+{
+    Streams late = hand();
+    late.imu.erase(late.imu.begin(), late.imu.begin() + 70);  // 0.35 s
+    const Outcome done = run(late);
+    EXPECT_TRUE(done.with_imu);
+    EXPECT_GE(done.results.size(), late.scans.size() - 4);
+    EXPECT_LT(done.results.size(), late.scans.size());
+    EXPECT_GT(done.results.front().estimate.state.t, late.imu.front().t);
+    EXPECT_LT(done.error(late.recording), 0.01);
+}
+
+TEST(Pipeline, AGapInTheImuIsReportedAndSurvived)
+{
+    Streams gap = hand();
+    gap.imu.erase(gap.imu.begin() + 700, gap.imu.begin() + 735);  // 180 ms, in motion
+    const Outcome done = run(gap);
+    EXPECT_EQ(done.log.count("imu_gap"), 1u);
+    EXPECT_EQ(done.log.kept().front().t, gap.imu[699].t);
+    EXPECT_EQ(done.results.size(), gap.scans.size());
+    EXPECT_LT(done.error(gap.recording), 0.03);
+}
+
+TEST(Pipeline, WithoutAnImuTheMotionIsTakenAsConstantVelocity)
+{
+    Recording slow;
+    slow.swing = 0.3;
+    const Streams blind{slow, {}, slow.scans()};
+    const Outcome done = run(blind);
+    EXPECT_FALSE(done.with_imu);
+    EXPECT_EQ(done.log.count("no_imu"), 1u);
+    EXPECT_EQ(done.results.size(), blind.scans.size());
+    const auto relative = [&](std::size_t i) -> Pose
+    {
+        // Its world is level at the start by definition: compared from the first scan on.
+        const NavState &first = done.results.front().estimate.state,
+                       &x = done.results[i].estimate.state;
+        const Pose truth = slow.truth(first.t).T_world_imu.inverse() * slow.truth(x.t).T_world_imu;
+        return truth.inverse() * (first.T_world_imu.inverse() * x.T_world_imu);
+    };
+    for (std::size_t i = 0; i < done.results.size(); i++) EXPECT_LT(relative(i).p.norm(), 0.05);
+}
+
+TEST(Pipeline, AnImuThatComesTooLateIsIgnored)
+{
+    Recording slow;
+    slow.swing = 0.3;
+    Streams blind{slow, {}, slow.scans()};
+    blind.scans.resize(20);
+    Streams late = blind;
+    late.imu = slow.imu();
+    late.imu.erase(late.imu.begin(), late.imu.begin() + 300);  // 1.5 s, half a second too late
+    const Outcome with = run(late), without = run(blind);
+    EXPECT_GT(with.log.count("late_imu"), 0u);
+    EXPECT_FALSE(with.with_imu);
+    expectEqual(with, without);
+}
+
+TEST(Pipeline, ScansOutOfOrderAreSkippedWithAWarning)
+{
+    Streams twisted = hand();
+    twisted.scans.resize(28);
+    const Outcome clean = run(twisted);
+    twisted.scans.insert(twisted.scans.begin() + 25, twisted.scans[24]);
+    twisted.scans.insert(twisted.scans.begin() + 26, twisted.scans[20]);
+    const Outcome done = run(twisted);
+    EXPECT_EQ(done.log.count("scan_order"), 2u);
+    expectEqual(done, clean);
+}
+
+TEST(Pipeline, AGapBetweenScansIsReportedAndSurvived)
+{
+    Streams gap = hand();
+    gap.scans.erase(gap.scans.begin() + 22, gap.scans.begin() + 29);
+    const Outcome done = run(gap);
+    EXPECT_EQ(done.log.count("lidar_gap"), 1u);
+    EXPECT_LT(done.error(gap.recording), 0.02);
+}
+
+TEST(Pipeline, AScanThatSeesNothingFollowsTheImu)
+{
+    Streams dark = hand();
+    dark.scans.resize(35);
+    dark.scans[25].points.clear();
+    for (LidarPoint& p : dark.scans[27].points)
+        p.position.setConstant(std::numeric_limits<float>::quiet_NaN());
+    const Outcome done = run(dark);
+    EXPECT_EQ(done.results.size(), dark.scans.size());
+    EXPECT_EQ(done.log.count("few_correspondences"), 2u);
+    EXPECT_FALSE(done.results[25].lidar_used);
+    EXPECT_FALSE(done.results[27].lidar_used);
+    EXPECT_TRUE(done.results[28].lidar_used);
+    EXPECT_LT(done.error(dark.recording), 0.01);
+}
+
+TEST(Pipeline, AlreadyUndistortedScansAreNotUndistortedAgain)
+{
+    Streams flat = hand();
+    flat.scans.resize(40);
+    for (Scan& scan : flat.scans)
+    {
+        const auto sensorAt = [&](Time t)
+        { return flat.recording.pose(toSeconds(t - flat.recording.start)) * scan.T_imu_lidar; };
+        const Pose T_end_world = sensorAt(scan.end).inverse();
+        for (LidarPoint& p : scan.points)
+        {
+            const Pose T_end_point = T_end_world * sensorAt(scan.timeOf(p));
+            p.position = (T_end_point * Vector3d(p.position.cast<double>())).cast<float>();
+        }
+        scan.already_undistorted = true;
+    }
+    const double flagged = run(flat).error(flat.recording);
+    EXPECT_LT(flagged, 0.006);
+    for (Scan& scan : flat.scans) scan.already_undistorted = false;
+    EXPECT_GT(run(flat).error(flat.recording), 2 * flagged);
+}
+
+TEST(Pipeline, AStartInMotionIsReportedAndSurvived)
+{
+    Streams moving = hand();
+    const Time begin = moving.recording.start + fromSeconds(2.2);
+    moving.imu.erase(
+        std::remove_if(
+            moving.imu.begin(), moving.imu.end(), [&](const ImuSample& s) { return s.t < begin; }),
+        moving.imu.end());
+    moving.scans.erase(moving.scans.begin(), moving.scans.begin() + 22);
+    const Outcome done = run(moving);
+    EXPECT_FALSE(done.initialization->at_rest);
+    EXPECT_EQ(done.log.count("no_rest"), 1u);
+    EXPECT_GE(done.results.size(), moving.scans.size() - 1);
+    for (const ScanResult& r : done.results)
+        EXPECT_TRUE(r.estimate.state.T_world_imu.p.allFinite());
+    // Moves as the truth does, whatever its world: by the distance of both ends of the motion.
+    const NavState &a = done.results.front().estimate.state,
+                   &b = done.results.back().estimate.state;
+    const double moved = (b.T_world_imu.p - a.T_world_imu.p).norm();
+    const double truth =
+        (moving.recording.truth(b.t).T_world_imu.p - moving.recording.truth(a.t).T_world_imu.p)
+            .norm();
+    EXPECT_NEAR(moved, truth, 0.1);
+}
+
+TEST(Pipeline, MemoryDoesNotGrowInARoomThatIsKnown)
+{
+    Streams early = hand();
+    early.scans.resize(40);
+    const std::size_t before = run(early).map_size;
+    EXPECT_GT(before, 0u);
+    EXPECT_LT(run(hand()).map_size, before + before / 2);
+}
+
+TEST(Pipeline, HasNothingToSayOfAnEmptyRecording)
+{
+    const Outcome nothing = run({});
+    EXPECT_TRUE(nothing.results.empty());
+    Streams no_scans = hand();
+    no_scans.scans.clear();
+    EXPECT_TRUE(run(no_scans).results.empty());
+}
