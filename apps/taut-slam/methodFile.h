@@ -11,7 +11,8 @@ namespace taut
  * Throws std::runtime_error if there is none. */
 std::string findMethodFile(const std::string& given);
 
-/** The file with the settings "section.key=value" laid over it. Throws ConfigError. */
+/** The file with the settings "section.key=value" laid over it. A setting of `type` to another
+ * class than the file's drops what the file gives for that one. Throws ConfigError. */
 mrpt::containers::yaml readMethodFile(
     const std::string& path, const std::vector<std::string>& settings);
 }  // namespace taut
