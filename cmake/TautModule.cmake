@@ -26,9 +26,10 @@ function(taut_add_app name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# taut_add_test(name SOURCES ... [DEPENDS ...] [LABELS ...]): a GoogleTest program, one ctest entry a test.
+# taut_add_test(name SOURCES ... [DEPENDS ...] [LABELS ...] [PROPERTIES ...]): a GoogleTest program, one
+# ctest entry a test.
 function(taut_add_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS;PROPERTIES" ${ARGN})
   add_executable(test_${name} ${ARG_SOURCES})
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support)
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gtest_main GTest::gmock
@@ -39,5 +40,5 @@ function(taut_add_test name)
     test_${name}
     TEST_PREFIX "${name}."
     DISCOVERY_TIMEOUT 60
-    PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
+    PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600 ${ARG_PROPERTIES})
 endfunction()

@@ -1,0 +1,10 @@
+# find_package(taut): targets taut::core (all that a plug-in needs) and one more for each module.
+include(CMakeFindDependencyMacro)
+find_dependency(Threads)
+find_dependency(Eigen3 3.4)
+foreach(lib core rtti containers)
+  find_dependency(mrpt-${lib} 2.5)
+endforeach()
+find_dependency(octomap 1.9)
+find_dependency(tsl-robin-map 1.2)
+include(${CMAKE_CURRENT_LIST_DIR}/tautTargets.cmake)
