@@ -14,7 +14,7 @@ struct NavPrior
     NavState::Matrix information = NavState::Matrix::Identity();
 };
 
-/** The cost of one scan (paper, equation 18): IMU factor, LiDAR factors, absolute bias prior and,
+/** The cost of one scan (paper, equation 17): IMU factor, LiDAR factors, absolute bias prior and,
  * where the previous state is released, its prior. Unknowns: (x_{k-1}, x_k), or x_k alone. */
 class ScanProblem : public LeastSquaresProblem
 {
