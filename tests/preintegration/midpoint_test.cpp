@@ -34,7 +34,7 @@ PreintegratedImu integrate(
 }
 
 /** Largest difference of alpha [m], beta [m/s] or gamma [rad]. */
-double difference(const MotionDelta& a, const MotionDelta& b)
+double difference(const Motion& a, const Motion& b)
 {
     return std::max(
         {(a.alpha - b.alpha).norm(), (a.beta - b.beta).norm(),
