@@ -30,6 +30,9 @@ endfunction()
 # ctest entry a test.
 function(taut_add_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS;PROPERTIES" ${ARGN})
+  if(NOT ARG_LABELS)
+    set(ARG_LABELS unit)  # an empty value would take the next word for the label
+  endif()
   add_executable(test_${name} ${ARG_SOURCES})
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support)
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gtest_main GTest::gmock

@@ -292,6 +292,8 @@ TEST(ScanProblem, APreviousStateHeldIsAsUncertainAsOneReleased)
     Instance released(Undistortion::Bridge, PreviousState::Released);
     fixed.problem->useLidar(false);
     released.problem->useLidar(false);
+    fixed.problem->relinearize();
+    released.problem->relinearize();
     EXPECT_LT(
         disagreement(fixed.problem->marginalInformation(), released.problem->marginalInformation()),
         1e-5);
@@ -301,8 +303,10 @@ TEST(ScanProblem, BalanceScalesTheLidarBlock)
 {
     Instance instance(Undistortion::Bridge, PreviousState::Released);
     instance.noise.kernel.kind = Kernel::None;
+    instance.problem->relinearize();
     const NavState::Matrix once = instance.problem->lidarInformation();
     instance.problem->setBalance(2);
+    instance.problem->relinearize();
     const NavState::Matrix halved = instance.problem->lidarInformation();
     EXPECT_LT((once - 4 * halved).norm(), 1e-9 * once.norm());
 }

@@ -222,7 +222,7 @@ TEST_F(InitializerTest, NeverStartsInMotionSilently)
     {
         config.on_motion = choice;
         Initializer initializer(config, log.sink());
-        rest(initializer, 0.6);
+        rest(initializer, 0.3);
         const std::size_t before = log.count("no_rest");
         ASSERT_TRUE(initializer.finish());
         EXPECT_FALSE(initializer.result()->at_rest);

@@ -91,6 +91,15 @@ SolveReport NloptSolver::solve(LeastSquaresProblem& problem) const
     {
         report.converged = true;  // z is the best found: as exact as doubles allow
     }
+    catch (const std::runtime_error& e)
+    {
+        // NLopt's own word for a line search that gets no further, with the best found in z. The
+        // whitened gradient there, in sigmas, tells whether that is the optimum.
+        if (std::string(e.what()) != "nlopt failure") throw;
+        std::vector<double> gradient(z.size());
+        WhitenedProblem::evaluate(z, gradient, &whitened);
+        report.converged = Eigen::Map<const Eigen::VectorXd>(gradient.data(), n).norm() < 1e-3;
+    }
     if (!std::isfinite(cost)) throw std::runtime_error("the cost at NLopt's result is not finite");
     const ProblemVector delta = whitened.step(z);
     problem.restore();
