@@ -9,10 +9,10 @@
 #include <iostream>
 
 #include "../CommandLine.h"
+#include "../Progress.h"
 #include "MapExport.h"
 #include "Metrics.h"
 #include "Options.h"
-#include "Progress.h"
 #include "ResultFiles.h"
 #include "methodFile.h"
 #include "taut/core/Plugins.h"

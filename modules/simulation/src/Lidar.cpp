@@ -34,10 +34,13 @@ std::unique_ptr<LidarPattern> patternOf(const LidarConfig& config)
     return makeVlp16Pattern(config.rotation_rate);
 }
 
-/** Light that comes back, against that of a white wall at 1 m. */
+/** Light that comes back along a direction, against that of a white wall at 1 m. A ray at the rim
+ * of a beam may graze a surface that its middle would see from behind: some light comes back even
+ * so. */
 double signalOf(const Hit& hit, const Vector3d& direction)
 {
-    return hit.reflectivity * -hit.normal.dot(direction) / (hit.range * hit.range);
+    const double cosine = std::max(-hit.normal.dot(direction), 1e-3);
+    return hit.reflectivity * cosine / (hit.range * hit.range);
 }
 
 /** What a beam of some width measures. Besides its middle, two opposite rays of it are cast. Where

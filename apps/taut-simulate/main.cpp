@@ -4,9 +4,9 @@
 #include <optional>
 #include <thread>
 
-#include "CommandLine.h"
-#include "Progress.h"
-#include "simulate/Recorder.h"
+#include "../CommandLine.h"
+#include "../Progress.h"
+#include "Recorder.h"
 
 namespace
 {
@@ -22,7 +22,7 @@ struct Options
 /** Nothing if only help was asked for. */
 std::optional<Options> parse(int argc, char** argv)
 {
-    TCLAP::CmdLine cmd("Writes a rawlog with its truth from a scenario", ' ', "0.1");
+    TCLAP::CmdLine cmd("Writes a rawlog with its truth from a scenario", ' ', TAUT_VERSION);
     TCLAP::ValueArg<std::string> scenario(
         "c", "config", "Scenario, as those in config/scenarios", true, "", "SCENARIO.yaml", cmd);
     TCLAP::ValueArg<std::string> output(
@@ -79,11 +79,15 @@ void run(const Options& options)
     }
     taut::Executor executor(options.threads);
     taut::Recorder recorder(options.recorder, scenario, simulator);
-    taut::Progress progress(static_cast<std::size_t>(simulator.sweeps()), "scans", options.quiet);
-    for (int k = 0; k < simulator.sweeps(); k++)
     {
-        recorder.add(k, simulator.sweep(k, executor));
-        progress.show(static_cast<std::size_t>(k + 1));
+        taut::Progress progress(!options.quiet);
+        const int sweeps = simulator.sweeps();
+        for (int k = 0; k < sweeps; k++)
+        {
+            recorder.add(k, simulator.sweep(k, executor));
+            const double done = (k + 1.0) / sweeps;
+            progress.update(done, k + 1, done * scenario.duration);
+        }
     }
     recorder.close();
     if (!options.quiet)
