@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "taut/core/Imu.h"
+#include "taut/core/Scan.h"
+#include "taut/rawlog/RawlogWriter.h"
+
+namespace taut
+{
+/** What a recording of another format holds for taut: one reading of an IMU, one sweep as points,
+ * or one sweep as the packets its sensor sent. */
+using ImportedItem = std::variant<ImuSample, Scan, PacketScan>;
+
+/** A recording of another format (packet capture, bag, folder), read item by item. Memory is
+ * bounded by a few sweeps, never by the length of the recording. */
+class ImportSource
+{
+ public:
+    virtual ~ImportSource() = default;
+
+    /** The next item, nothing at the end of the recording. Items come in the order of the
+     * recording; those of one sensor in the order of time. What is damaged on the way is left out
+     * and reported through the WarningSink that the source was given. Throws std::runtime_error
+     * naming file and cause if nothing after this can be read. */
+    virtual std::optional<ImportedItem> next() = 0;
+
+    /** Share of the recording that was read so far, 0 to 1: for a progress bar. */
+    virtual double progress() const = 0;
+};
+}  // namespace taut
