@@ -1,7 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "taut/core/Imu.h"
 #include "taut/core/Scan.h"
@@ -28,5 +30,9 @@ class ImportSource
 
     /** Share of the recording that was read so far, 0 to 1: for a progress bar. */
     virtual double progress() const = 0;
+
+    /** What was found out about the recording and used, though nothing is wrong with it (topics,
+     * units, what a stamp means): one line each for the summary. Complete at the end. */
+    virtual std::vector<std::string> findings() const { return {}; }
 };
 }  // namespace taut
