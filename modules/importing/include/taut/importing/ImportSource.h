@@ -20,12 +20,16 @@ using ImportedItem = std::variant<ImuSample, Scan, PacketScan>;
 class ImportSource
 {
  public:
+    ImportSource() = default;
     virtual ~ImportSource() = default;
+    ImportSource(const ImportSource&) = delete;
+    ImportSource& operator=(const ImportSource&) = delete;
 
     /** The next item, nothing at the end of the recording. Items come in the order of the
      * recording; those of one sensor in the order of time. What is damaged on the way is left out
-     * and reported through the WarningSink that the source was given. Throws std::runtime_error
-     * naming file and cause if nothing after this can be read. */
+     * and reported through the WarningSink that the source was given: a warning always means that
+     * a part of the recording could not be used. Throws std::runtime_error naming file and cause
+     * if nothing after this can be read. */
     virtual std::optional<ImportedItem> next() = 0;
 
     /** Share of the recording that was read so far, 0 to 1: for a progress bar. */

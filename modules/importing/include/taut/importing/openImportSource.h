@@ -1,0 +1,17 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "taut/core/Warning.h"
+#include "taut/importing/ImportOptions.h"
+#include "taut/importing/ImportSource.h"
+
+namespace taut
+{
+/** Opens a recording, of whichever format it looks like: by its first bytes, its name or, for a
+ * folder, by what is in it. Throws std::runtime_error naming the recording if it is not there, is
+ * of no format that is known (the message lists those) or is known to be unusable. */
+std::unique_ptr<ImportSource> openImportSource(
+    const std::string& path, const ImportOptions& options = {}, const WarningSink& warn = {});
+}  // namespace taut
