@@ -1,5 +1,6 @@
 /** taut-evaluate: scores an estimated trajectory against the truth.
  * Exit codes: 0 scored, 1 failed or refused, 2 bad usage. */
+#include <algorithm>
 #include <iostream>
 #include <optional>
 
@@ -15,6 +16,7 @@ struct Options
     std::string truth, estimate, kitti_times, points, points_truth, plot_folder;
     taut::PlotFormat plot_format = taut::PlotFormat::Svg;
     bool json = false;
+    double from_time = 0;  // [s] since the first true pose
     taut::ScoreOptions score;
 };
 
@@ -64,6 +66,9 @@ std::optional<Options> parse(int argc, char** argv)
         0.5, "0..1", cmd);
     TCLAP::ValueArg<int> min_poses(
         "", "min-poses", "Poses to be scored, else refused (default 10)", false, 10, "N", cmd);
+    TCLAP::ValueArg<double> from_time(
+        "", "from-time", "Leave out what is earlier: seconds since the first true pose", false, 0,
+        "S", cmd);
     TCLAP::MultiArg<double> rpe_seconds(
         "", "rpe-seconds", "Relative error over that time [s] (default 1 and 10)", false, "S", cmd);
     TCLAP::MultiArg<double> rpe_metres(
@@ -87,6 +92,8 @@ std::optional<Options> parse(int argc, char** argv)
     options.kitti_times = kitti_times.getValue();
     options.json = json.getValue();
     options.score.alignment = alignmentOf(alignment.getValue());
+    options.from_time = from_time.getValue();
+    if (!(options.from_time >= 0)) throw taut::UsageError("--from-time is negative");
     options.score.min_coverage = min_coverage.getValue();
     if (rpe_seconds.isSet()) options.score.rpe_seconds = positive(rpe_seconds.getValue());
     if (rpe_metres.isSet()) options.score.rpe_metres = positive(rpe_metres.getValue());
@@ -101,6 +108,15 @@ std::optional<Options> parse(int argc, char** argv)
     return options;
 }
 
+taut::Trajectory since(taut::Time begin, taut::Trajectory trajectory)
+{
+    const auto first = std::find_if(
+        trajectory.begin(), trajectory.end(),
+        [begin](const taut::StampedPose& pose) { return pose.t >= begin; });
+    trajectory.erase(trajectory.begin(), first);
+    return trajectory;
+}
+
 void run(const Options& options)
 {
     const auto warn = [](const taut::Warning& w) { std::cerr << "warning: " << w.text << "\n"; };
@@ -109,12 +125,19 @@ void run(const Options& options)
         return options.kitti_times.empty() ? taut::readTum(path, warn)
                                            : taut::readKitti(path, options.kitti_times);
     };
-    const taut::Trajectory truth = read(options.truth), estimate = read(options.estimate);
+    taut::Trajectory truth = read(options.truth), estimate = read(options.estimate);
+    taut::Time begin = 0;
+    if (options.from_time > 0 && !truth.empty())
+    {
+        begin = truth.front().t + taut::fromSeconds(options.from_time);
+        truth = since(begin, std::move(truth));
+        estimate = since(begin, std::move(estimate));
+    }
     const taut::Scores scores = scoreTrajectory(truth, estimate, options.score, warn);
     std::optional<taut::PointScores> points;
     if (!options.points.empty())
-        points =
-            taut::scorePoints(options.points_truth, options.points, options.score.min_coverage);
+        points = taut::scorePoints(
+            options.points_truth, options.points, options.score.min_coverage, begin);
     std::cout << (options.json ? scoresAsJson(scores, points) : scoresAsText(scores, points));
     if (!options.plot_folder.empty())
         taut::plotScores(scores, truth, options.plot_folder, options.plot_format);

@@ -1,5 +1,6 @@
 #include "Recorder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,16 @@ std::string besides(const std::string& rawlog, const std::string& ending)
     const bool has_own = rawlog.size() > own.size() &&
                          rawlog.compare(rawlog.size() - own.size(), own.size(), own) == 0;
     return rawlog.substr(0, rawlog.size() - (has_own ? own.size() : 0)) + ending;
+}
+
+/** A reader drops points that are not finite: they have no truth. */
+void dropNotFinite(std::vector<Eigen::Vector3f>& positions)
+{
+    positions.erase(
+        std::remove_if(
+            positions.begin(), positions.end(),
+            [](const Eigen::Vector3f& p) { return !p.allFinite(); }),
+        positions.end());
 }
 
 velodyne::Model modelOf(const LidarConfig& config)
@@ -58,6 +69,7 @@ void Recorder::add(int k, SimulatedScan simulated)
     // Readers drop scans that go back in time: they have no truth.
     if (!point_truth_ || scan.end <= last_scan_end_) return;
     last_scan_end_ = scan.end;
+    dropNotFinite(simulated.truth);
     point_truth_->write({scan.end, simulated.truth});
 }
 

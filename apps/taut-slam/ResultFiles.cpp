@@ -28,7 +28,7 @@ std::ostream& operator<<(std::ostream& out, const Vector3d& v)
 }
 }  // namespace
 
-ResultFiles::ResultFiles(const std::string& folder, bool refined)
+ResultFiles::ResultFiles(const std::string& folder, bool refined, bool points)
     : folder_(folder),
       refined_(refined),
       tum_(folder + "/trajectory.tum"),
@@ -36,6 +36,7 @@ ResultFiles::ResultFiles(const std::string& folder, bool refined)
       states_(open(folder + "/states.csv")),
       timing_(open(folder + "/timing.csv"))
 {
+    if (points) points_.emplace(folder + "/undistorted.points");
     states_ << "t,vx,vy,vz,ba_x,ba_y,ba_z,bg_x,bg_y,bg_z";
     for (const char* entry : {"p", "v", "theta", "ba", "bg"})
         for (const char* axis : {"x", "y", "z"}) states_ << ",var_" << entry << '_' << axis;
@@ -54,6 +55,7 @@ void ResultFiles::add(const ScanResult& result)
     pending_ = StampedPose{x.t, x.T_world_imu};
     writeState(result);
     writeTiming(result);
+    if (points_) points_->write({x.t, result.undistorted});
 }
 
 void ResultFiles::writePose(Time t, const Pose& pose)
@@ -95,6 +97,7 @@ void ResultFiles::close()
     if (pending_) writePose(pending_->t, pending_->T_world_imu);
     pending_.reset();
     tum_.close();
+    if (points_) points_->close();
     taut::close(kitti_, folder_ + "/trajectory_kitti.txt");
     taut::close(states_, folder_ + "/states.csv");
     taut::close(timing_, folder_ + "/timing.csv");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "taut/odometry/Odometry.h"
+#include "taut/trajectory/PointTruth.h"
 #include "taut/trajectory/TrajectoryFile.h"
 
 namespace taut
@@ -15,8 +16,9 @@ namespace taut
 class ResultFiles
 {
  public:
-    /** `refined`: a pose is written as the scan after it left it, one scan late. */
-    ResultFiles(const std::string& folder, bool refined);
+    /** `refined`: a pose is written as the scan after it left it, one scan late. `points`:
+     * undistorted.points is written too, of the results' undistorted points. */
+    ResultFiles(const std::string& folder, bool refined, bool points);
 
     void add(const ScanResult& result);
     void close();
@@ -35,6 +37,7 @@ class ResultFiles
     bool refined_;
     TumWriter tum_;
     std::ofstream kitti_, states_, timing_;
+    std::optional<PointTruthWriter> points_;
     std::optional<StampedPose> pending_;
     std::optional<Pose> last_;
     std::vector<Pose> sample_;

@@ -55,6 +55,9 @@ Method readMethod(const Options& options, const std::string& path, const Rig& ri
     }
     ConfigSection& output = root.section("output");
     output.key("refined", m.refined, "write each pose as the next scan leaves it, one scan late");
+    output.key(
+        "undistorted_points", m.odometry.keep_undistorted,
+        "write undistorted.points, for taut-evaluate --points");
     m.map_export.declare(output);
     m.renderer = createConfigured<Renderer>(root.section("render"), "taut::OSMesaRenderer");
     root.rejectUnknown();
@@ -128,7 +131,7 @@ class Run
         makeFolder(options_);
         writeText(fs::path(options_.output) / "config.yaml", method_.effective);
         MapExport map(method_.map_export, options_.output);
-        ResultFiles files(options_.output, method_.refined);
+        ResultFiles files(options_.output, method_.refined, method_.odometry.keep_undistorted);
 
         const std::string failure = process(log, map, files);
         files.close();

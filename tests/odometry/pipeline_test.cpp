@@ -57,7 +57,9 @@ struct Outcome
 };
 
 /** Feeds both streams in the order of time, as a player would. */
-Outcome run(const Streams& streams, const std::string& estimation = "{}", int threads = 1)
+Outcome run(
+    const Streams& streams, const std::string& estimation = "{}", int threads = 1,
+    bool keep_undistorted = false)
 {
     registerAll();
     ConfigSection root(mrpt::containers::yaml::FromText(
@@ -65,7 +67,8 @@ Outcome run(const Streams& streams, const std::string& estimation = "{}", int th
         "lidar: {max_range: 30}\n"
         "estimation: " +
         estimation + "\n"));
-    const OdometryConfig config = OdometryConfig::read(root);
+    OdometryConfig config = OdometryConfig::read(root);
+    config.keep_undistorted = keep_undistorted;
     root.rejectUnknown();
     Executor executor(threads);
     Outcome out;
@@ -159,6 +162,54 @@ TEST(Pipeline, WritesPointsWhereTheyWere)
         }
     EXPECT_GT(all, hand().scans.size() * 3000);
     EXPECT_LT(static_cast<double>(outside), 1e-3 * static_cast<double>(all));
+}
+
+TEST(Pipeline, UndistortsEveryPointOnRequest)
+{
+    Streams brisk = hand();
+    brisk.scans.resize(40);
+    // RMSE over all scans of the distance to where the true motion takes the points [m].
+    const auto errorOf = [&brisk](const std::string& mode)
+    {
+        const Outcome done = run(brisk, "{undistortion: " + mode + "}", 2, true);
+        double sum = 0;
+        std::size_t points = 0;
+        for (std::size_t k = 0; k < done.results.size(); k++)
+        {
+            const Scan& raw = brisk.scans[k];
+            const std::vector<Eigen::Vector3f>& undistorted = done.results[k].undistorted;
+            if (undistorted.size() != raw.points.size()) return -1.0;
+            const Pose T_end_world = brisk.recording.truth(raw.end).T_world_imu.inverse();
+            for (std::size_t i = 0; i < raw.points.size(); i += 7)
+            {
+                const LidarPoint& p = raw.points[i];
+                const Pose T = T_end_world * brisk.recording.truth(raw.timeOf(p)).T_world_imu;
+                const Vector3d in_imu = raw.T_imu_lidar * Vector3d(p.position.cast<double>());
+                if (!undistorted[i].allFinite()) continue;
+                sum += (T * in_imu - undistorted[i].cast<double>()).squaredNorm();
+                points++;
+            }
+        }
+        return points < 20'000 ? -1.0 : std::sqrt(sum / static_cast<double>(points));
+    };
+    for (const std::string mode : {"bridge", "iterated", "iterated-imu", "imu"})
+    {
+        const double error = errorOf(mode);
+        EXPECT_GT(error, 0) << mode;
+        EXPECT_LT(error, 0.004) << mode;
+    }
+    EXPECT_GT(errorOf("none"), 0.05);
+    EXPECT_TRUE(run(brisk).results.back().undistorted.empty());
+}
+
+TEST(Pipeline, APointThatIsNotUsableIsNotUndistorted)
+{
+    Streams holes = hand();
+    holes.scans.resize(20);
+    holes.scans[17].points[5].position *= 100.0F;  // out of range
+    const Outcome done = run(holes, "{}", 1, true);
+    EXPECT_TRUE(done.results[17].undistorted[5].array().isNaN().all());
+    EXPECT_TRUE(done.results[17].undistorted[6].allFinite());
 }
 
 TEST(Pipeline, ScansBeforeTheImuAreLeftOut)

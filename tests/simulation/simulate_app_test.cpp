@@ -164,9 +164,14 @@ TEST_F(SimulateApp, FaultsReachTheReader)
     EXPECT_THAT(recording.warnings, testing::Contains("scan_bad_points"));
     EXPECT_THAT(recording.warnings, testing::Contains("imu_time"));
     PointTruthReader points(file("log.points"));
-    UndistortedScan scan;
-    while (points.next(scan))
+    UndistortedScan truth;
+    for (const Scan& scan : recording.scans)
     {
+        while (points.next(truth) && truth.stamp < scan.end - 1000)
+        {
+        }
+        ASSERT_NEAR(static_cast<double>(truth.stamp - scan.end), 0, 1000);
+        EXPECT_EQ(truth.positions.size(), scan.points.size()) << "in the order of the finite ones";
     }
 }
 

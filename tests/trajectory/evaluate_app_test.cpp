@@ -80,6 +80,33 @@ TEST_F(EvaluateApp, ScoresPoints)
     EXPECT_EQ(run(files() + truth).exit_code, 2);
 }
 
+TEST_F(EvaluateApp, LeavesOutWhatIsTooEarly)
+{
+    Trajectory estimate = readTum(estimate_);
+    for (StampedPose& pose : estimate)  // wrong in the first 5 s alone
+        if (toSeconds(pose.t - test::kStart) < 4.95) pose.T_world_imu.p.x() += 9;
+    writeTum(estimate_, estimate);
+    for (const std::string name : {"truth", "estimate"})
+    {
+        PointTruthWriter writer(folder_ / (name + ".points"));
+        writer.write({test::kStart, {{1, 2, name == "truth" ? 3.0F : 9.0F}}});
+        writer.write({test::kStart + fromSeconds(6), {{1, 2, name == "truth" ? 3.0F : 3.5F}}});
+        writer.close();
+    }
+    const test::ProgramRun r =
+        run(files() + " --json --from-time 5 --points-truth " + folder_ / "truth.points --points " +
+            folder_ / "estimate.points");
+    ASSERT_EQ(r.exit_code, 0) << r.output;
+    const auto json = nlohmann::json::parse(r.output);
+    EXPECT_EQ(json["paired_poses"], 151);
+    EXPECT_NEAR(json["coverage"]["truth_span_s"], 15, 1e-6);
+    EXPECT_NEAR(json["ate"]["position_m"]["rmse"], 0.03, 1e-4);
+    EXPECT_EQ(json["points"]["rmse_m"], 0.5);
+    EXPECT_EQ(json["points"]["truth_scans"], 1);
+    EXPECT_EQ(run(files() + " --from-time -1").exit_code, 2);
+    EXPECT_EQ(run(files() + " --from-time 100").exit_code, 1);
+}
+
 TEST_F(EvaluateApp, RefusesWithExitCode1)
 {
     writeTum(estimate_, test::lissajous(5, 10));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace taut
 {
@@ -71,7 +72,8 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples& imu)
 {
     ScanResult result;
     Stopwatch watch;
-    const Scan scan = transformScan(raw, config_.range, previous_.state.t);
+    const Time begin = previous_.state.t;
+    const Scan scan = transformScan(raw, config_.range, begin);
     result.scan_points = scan.points.size();
     watch.stage(result.times.transform);
 
@@ -94,6 +96,7 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples& imu)
 
     insert(scan, path, result);
     watch.stage(result.times.insert);
+    if (config_.keep_undistorted) result.undistorted = undistorted(raw, begin, path);
     return result;
 }
 
@@ -158,6 +161,29 @@ double Odometry::balanceOf(const LidarFactor& lidar, const SweepPath& path, int 
     if (matches < config.balance_min_matches) return config.inflation;
     const double spread = std::sqrt(lidar.fit(path, 1.0).reducedChi2());
     return config.inflation * std::clamp(spread, 0.3, 10.0);
+}
+
+std::vector<Eigen::Vector3f> Odometry::undistorted(
+    const Scan& raw, Time begin, const SweepPath& path) const
+{
+    const Pose T_end_world = previous_.state.T_world_imu.inverse();
+    std::vector<Eigen::Vector3f> points(
+        raw.points.size(), Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+    executor_.forChunks(
+        points.size(), 1024,
+        [&](std::size_t, std::size_t chunk_begin, std::size_t chunk_end)
+        {
+            std::size_t hint = 0;
+            for (std::size_t i = chunk_begin; i < chunk_end; i++)
+            {
+                const LidarPoint& p = raw.points[i];
+                if (!isUsable(p, raw, config_.range, begin)) continue;
+                const Pose T_end_imu = T_end_world * path.poseAt(raw.timeOf(p), hint);
+                const Vector3d in_imu = raw.T_imu_lidar * Vector3d(p.position.cast<double>());
+                points[i] = (T_end_imu * in_imu).cast<float>();
+            }
+        });
+    return points;
 }
 
 void Odometry::insert(const Scan& scan, const SweepPath& path, ScanResult& result)

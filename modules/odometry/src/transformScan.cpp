@@ -2,6 +2,15 @@
 
 namespace taut
 {
+bool isUsable(const LidarPoint& point, const Scan& scan, const RangeConfig& range, Time begin)
+{
+    const auto min2 = static_cast<float>(range.min * range.min);
+    const auto max2 = static_cast<float>(range.max * range.max);
+    const float r2 = point.position.squaredNorm();
+    const Time t = scan.timeOf(point);
+    return r2 >= min2 && r2 <= max2 && t > begin && t <= scan.end;
+}
+
 Scan transformScan(const Scan& scan, const RangeConfig& range, Time begin)
 {
     Scan out;
@@ -14,13 +23,9 @@ Scan transformScan(const Scan& scan, const RangeConfig& range, Time begin)
 
     const Eigen::Matrix3f R = scan.T_imu_lidar.R.cast<float>();
     const Eigen::Vector3f p = scan.T_imu_lidar.p.cast<float>();
-    const auto min2 = static_cast<float>(range.min * range.min);
-    const auto max2 = static_cast<float>(range.max * range.max);
     for (const LidarPoint& point : scan.points)
     {
-        const float r2 = point.position.squaredNorm();
-        const Time t = scan.timeOf(point);
-        if (!(r2 >= min2 && r2 <= max2) || t <= begin || t > scan.end) continue;
+        if (!isUsable(point, scan, range, begin)) continue;
         out.points.push_back(point);
         out.points.back().position = R * point.position + p;
     }

@@ -170,11 +170,13 @@ bool PointTruthReader::next(UndistortedScan& scan)
 }
 
 PointScores scorePoints(
-    const std::string& truth_path, const std::string& estimate_path, double min_coverage)
+    const std::string& truth_path, const std::string& estimate_path, double min_coverage, Time from)
 {
     PointTruthReader truth_file(truth_path), estimate_file(estimate_path);
     UndistortedScan truth, estimate;
     bool has_truth = truth_file.next(truth), has_estimate = estimate_file.next(estimate);
+    while (has_truth && truth.stamp < from) has_truth = truth_file.next(truth);
+    while (has_estimate && estimate.stamp < from) has_estimate = estimate_file.next(estimate);
     Duration closest = kNever;
     PointScores scores;
     Sums all;

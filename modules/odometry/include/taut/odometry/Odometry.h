@@ -22,9 +22,12 @@ struct ScanResult
     NavEstimate estimate;  //!< x_k after this scan
     NavState previous;     //!< x_{k-1} as this scan moved it; x_{k-1} unchanged where it is held
     std::vector<Vector3d> points;  //!< undistorted points as inserted, world frame [m]
-    Motion motion;                 //!< preintegrated, from this state back to the previous one
-    double duration = 0;           //!< [s] between both
-    std::size_t scan_points = 0;   //!< raw points used, in range and time
+    /** Where OdometryConfig::keep_undistorted asks for it: each point of the raw scan in the body
+     * frame at its end, along the final path [m]; NaN where it was not usable. */
+    std::vector<Eigen::Vector3f> undistorted;
+    Motion motion;                //!< preintegrated, from this state back to the previous one
+    double duration = 0;          //!< [s] between both
+    std::size_t scan_points = 0;  //!< raw points used, in range and time
     int features = 0, correspondences = 0, iterations = 0;
     bool converged = true;
     bool lidar_used = false;  //!< false: too few correspondences; the IMU alone moved the state
@@ -57,6 +60,8 @@ class Odometry
     void estimate(
         const Features& features, const PreintegratedImu& motion, SweepPath& path,
         ScanResult& result);
+    std::vector<Eigen::Vector3f> undistorted(
+        const Scan& raw, Time begin, const SweepPath& path) const;
     void insert(const Scan& scan, const SweepPath& path, ScanResult& result);
     double balanceOf(const LidarFactor& lidar, const SweepPath& path, int matches) const;
 

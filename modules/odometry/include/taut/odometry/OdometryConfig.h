@@ -62,6 +62,7 @@ struct OdometryConfig
     bool imu_noise_from_rest = true;  //!< raise the white noise to what is seen at rest
     RangeConfig range;
     MapInsertConfig insert;
+    bool keep_undistorted = false;  //!< fill ScanResult::undistorted; for programs, not a key
     double imu_wait = 1.0;  //!< [s] of scans without any IMU sample after which there is no IMU
 
     std::shared_ptr<Preintegrator> preintegrator;

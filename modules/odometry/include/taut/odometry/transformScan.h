@@ -11,8 +11,11 @@ struct RangeConfig
     double max = 100.0;  //!< [m]
 };
 
+/** Whether a point of a scan can be used: in range, and measured after `begin` (the time of the
+ * previous state) and not after the scan's end. */
+bool isUsable(const LidarPoint& point, const Scan& scan, const RangeConfig& range, Time begin);
+
 /** Scan Transformation (paper, section II-A): the points from the LiDAR's frame to the body's, so
- * that later stages know of one frame only. Points out of range, or measured at or before `begin`
- * (the time of the previous state) or after the scan's end, are dropped. */
+ * that later stages know of one frame only. Points that are not usable are dropped. */
 Scan transformScan(const Scan& scan, const RangeConfig& range, Time begin);
 }  // namespace taut

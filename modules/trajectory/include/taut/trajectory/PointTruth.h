@@ -17,7 +17,7 @@
  *
  * `stamp` is Scan::end as the rawlog module gives it: the time of the IMU frame that the positions
  * are in. The positions stand in the order of the points of the observation in the rawlog, one for
- * each of them; those that were dropped (no return, not finite, too near...) are NaN. */
+ * each of them that is finite and a return; those that were dropped later (too near...) are NaN. */
 namespace taut
 {
 struct UndistortedScan
@@ -77,7 +77,8 @@ struct PointScores
 /** Compares the scans whose stamps agree to 1 us (rawlogs keep 100 ns). Throws ScoreRefused if
  * these are none, or less than the share `min_coverage` of the scans of the truth, or if they hold
  * less than that share of its points, and std::runtime_error if two such scans differ in their
- * number of points. */
+ * number of points. Scans before `from` are left out. */
 PointScores scorePoints(
-    const std::string& truth_path, const std::string& estimate_path, double min_coverage = 0.5);
+    const std::string& truth_path, const std::string& estimate_path, double min_coverage = 0.5,
+    Time from = 0);
 }  // namespace taut
