@@ -18,6 +18,11 @@ endif()
 find_package(OpenSSL 3.0 REQUIRED COMPONENTS Crypto) # libssl-dev 3.0
 find_library(OSMESA_LIBRARY OSMesa REQUIRED) # libosmesa6-dev 22.3.6
 find_path(OSMESA_INCLUDE_DIR GL/osmesa.h REQUIRED)
+find_path(PCAP_INCLUDE_DIR pcap/pcap.h REQUIRED) # libpcap-dev 1.10.3
+find_library(PCAP_LIBRARY pcap REQUIRED)
+add_library(PCAP::PCAP INTERFACE IMPORTED)
+set_target_properties(PCAP::PCAP PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${PCAP_INCLUDE_DIR}"
+                                            INTERFACE_LINK_LIBRARIES "${PCAP_LIBRARY}")
 find_package(embree 3 QUIET) # libembree-dev 3.13.5; optional: simulation
 
 # Strict warnings, on an interface target so that no directory forgets them.

@@ -8,11 +8,6 @@ namespace taut
 namespace
 {
 const double kStep = std::log(1.02);
-
-double seconds(int bucket)
-{
-    return std::exp(bucket * kStep) * 1e-9;
-}
 }  // namespace
 
 void SensorSummary::add(Time t)
@@ -21,7 +16,10 @@ void SensorSummary::add(Time t)
     const Duration interval = t - last_;
     last_ = t;
     if (interval <= 0) return;
-    intervals_[static_cast<int>(std::lround(std::log(static_cast<double>(interval)) / kStep))]++;
+    auto& bucket =
+        intervals_[static_cast<int>(std::lround(std::log(static_cast<double>(interval)) / kStep))];
+    bucket.count++;
+    bucket.seconds += toSeconds(interval);
     if (interval <= longest_) return;
     longest_ = interval;
     longest_at_ = t - interval;
@@ -31,12 +29,13 @@ std::string SensorSummary::text() const
 {
     if (count_ < 2) return std::to_string(count_);
     std::size_t below = 0, gaps = 0;
-    double usual = 0;
-    for (const auto& [bucket, n] : intervals_)
+    double usual = 0;  // the median, to the width of a bucket
+    for (const auto& [size, bucket] : intervals_)
     {
-        if (2 * below < count_ - 1) usual = seconds(bucket);
-        below += n;
-        if (seconds(bucket) > 2.5 * usual) gaps += n;
+        const double mean = bucket.seconds / static_cast<double>(bucket.count);
+        if (2 * below < count_ - 1) usual = mean;
+        below += bucket.count;
+        if (mean > 2.5 * usual) gaps += bucket.count;
     }
     char text[200];
     int n = std::snprintf(

@@ -25,7 +25,12 @@ class SensorSummary
  private:
     std::size_t count_ = 0;
     Time first_ = 0, last_ = 0;
-    std::map<int, std::size_t> intervals_;  // by size, in steps of 2 %
+    struct Intervals
+    {
+        std::size_t count = 0;
+        double seconds = 0;  // of all of them
+    };
+    std::map<int, Intervals> intervals_;  // by size, in steps of 2 %
     Duration longest_ = 0;
     Time longest_at_ = 0;  // its begin
 };

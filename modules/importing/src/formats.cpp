@@ -1,11 +1,14 @@
 /** The one list of formats: a new one adds a line here. */
 #include "ImportFormat.h"
+#include "pcap/PcapSource.h"
 
 namespace taut
 {
 const std::vector<ImportFormat>& importFormats()
 {
-    static const std::vector<ImportFormat> formats{};
+    static const std::vector<ImportFormat> formats{
+        {"packet capture (pcap, pcapng)", isPcap, openPcap},
+    };
     return formats;
 }
 }  // namespace taut

@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "PacketDecoder.h"
+#include "taut/importing/ouster/Decoder.h"
+
+namespace taut
+{
+namespace
+{
+constexpr Time kYear2000 = 946'684'800'000'000'000;
+constexpr Duration kSecond = 1'000'000'000;
+
+class OusterDecoder : public PacketDecoder
+{
+ public:
+    OusterDecoder(const ouster::SensorInfo& info, bool capture_clock)
+        : info_(info), frames_(info), capture_clock_(capture_clock)
+    {
+    }
+
+    std::string make() const override { return "Ouster"; }
+
+    bool recognises(const UdpDatagram& datagram) const override
+    {
+        return datagram.payload.size() == ouster::lidarPacketBytes(info_) ||
+               datagram.to_port == info_.lidar_port || datagram.to_port == info_.imu_port;
+    }
+
+    void add(const UdpDatagram& datagram, ImportedItems& items) override
+    {
+        if (isImu(datagram))
+            addImu(datagram, items);
+        else
+            addLidar(datagram, items);
+    }
+
+    void finish(ImportedItems& items, const WarningSink& warn) override
+    {
+        if (auto frame = frames_.finish()) give(std::move(*frame), items);
+        if (frames_.lateColumns() > 0 && warn)
+            warn(
+                {0, "packets_late",
+                 std::to_string(frames_.lateColumns()) +
+                     " columns came after their turn was over; left out"});
+        if (imu_packets_ == 0 && lidar_packets_ > 0 && warn)
+            warn(
+                {0, "no_imu",
+                 "an Ouster measures rates and forces too, but the capture has no packet of that "
+                 "on port " +
+                     std::to_string(info_.imu_port)});
+    }
+
+    std::vector<std::string> findings() const override
+    {
+        if (lidar_packets_ + imu_packets_ == 0) return {};
+        std::vector<std::string> lines{
+            "Ouster " + info_.model + ": " + std::to_string(lidar_packets_) + " lidar and " +
+                std::to_string(imu_packets_) + " IMU packets",
+            "IMU: converted from g and deg/s, as the sensor gives them"};
+        if (incomplete_ > 0)
+            lines.push_back(
+                std::to_string(incomplete_) + " turns of " + std::to_string(turns_) +
+                " have fewer than " + std::to_string(info_.columns_per_frame) + " columns");
+        char text[160];
+        if (capture_clock_)
+            std::snprintf(text, sizeof text, "stamps: when the capture says");
+        else if (shift_ == 0)
+            std::snprintf(text, sizeof text, "stamps: the sensor's clock");
+        else
+            std::snprintf(
+                text, sizeof text,
+                "stamps: the sensor's clock, which counts from its start, put on the day of the "
+                "capture: %.0f s added",
+                toSeconds(shift_));
+        lines.emplace_back(text);
+        return lines;
+    }
+
+ private:
+    bool isImu(const UdpDatagram& datagram) const
+    {
+        return datagram.to_port == info_.imu_port && info_.imu_port != info_.lidar_port;
+    }
+
+    void addImu(const UdpDatagram& datagram, ImportedItems& items)
+    {
+        if (!info_.legacy_imu)
+            throw std::runtime_error("its udp_profile_imu cannot be decoded here");
+        if (datagram.payload.size() != ouster::kImuPacketBytes)
+            throw std::runtime_error(
+                "an IMU packet has " + std::to_string(datagram.payload.size()) +
+                " bytes instead of 48");
+        ImuSample sample = ouster::decodeImu(datagram.payload.data());
+        imu_packets_++;
+        sample.t = capture_clock_ ? datagram.captured : onCalendar(sample.t, datagram.captured);
+        items.emplace_back(sample);
+    }
+
+    void addLidar(const UdpDatagram& datagram, ImportedItems& items)
+    {
+        auto frame = frames_.add(datagram.payload.data(), datagram.payload.size());
+        lidar_packets_++;
+        if (frame) give(std::move(*frame), items);
+        const auto t = frames_.packetTime();
+        if (!t) return;
+        onCalendar(*t, datagram.captured);
+        delays_ = std::min(delays_.value_or(datagram.captured - *t), datagram.captured - *t);
+    }
+
+    void give(ouster::Frame frame, ImportedItems& items)
+    {
+        turns_++;
+        if (frame.columns < info_.columns_per_frame) incomplete_++;
+        const Duration shift = capture_clock_ ? delays_.value_or(0) : shift_;
+        frame.scan.stamp += shift;
+        frame.scan.end += shift;
+        delays_.reset();
+        items.emplace_back(std::move(frame.scan));
+    }
+
+    /** A clock that counts from the sensor's start is moved by whole seconds. */
+    Time onCalendar(Time t, Time captured)
+    {
+        if (!clock_known_ && t < kYear2000)
+            shift_ = (captured - t + kSecond / 2) / kSecond * kSecond;
+        clock_known_ = true;
+        return t + shift_;
+    }
+
+    ouster::SensorInfo info_;
+    ouster::FrameAssembler frames_;
+    bool capture_clock_, clock_known_ = false;
+    Duration shift_ = 0;
+    std::optional<Duration> delays_;  // the shortest from measurement to capture in this turn
+    std::size_t lidar_packets_ = 0, imu_packets_ = 0, turns_ = 0, incomplete_ = 0;
+};
+}  // namespace
+
+std::unique_ptr<PacketDecoder> makeOusterDecoder(const ouster::SensorInfo& info, bool capture_clock)
+{
+    return std::make_unique<OusterDecoder>(info, capture_clock);
+}
+}  // namespace taut

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "taut/core/Warning.h"
+#include "taut/importing/ImportSource.h"
+#include "taut/importing/ouster/SensorInfo.h"
+#include "taut/importing/pcap/PcapReader.h"
+
+namespace taut
+{
+using ImportedItems = std::deque<ImportedItem>;
+
+/** What one make of sensor sends, to what it measured. */
+class PacketDecoder
+{
+ public:
+    PacketDecoder() = default;
+    virtual ~PacketDecoder() = default;
+    PacketDecoder(const PacketDecoder&) = delete;
+    PacketDecoder& operator=(const PacketDecoder&) = delete;
+
+    virtual std::string make() const = 0;
+
+    /** True if the datagram looks like one of this make. */
+    virtual bool recognises(const UdpDatagram& datagram) const = 0;
+
+    /** Throws std::runtime_error if the datagram cannot be used. */
+    virtual void add(const UdpDatagram& datagram, ImportedItems& items) = 0;
+
+    /** What is left at the end. */
+    virtual void finish(ImportedItems& items, const WarningSink& warn) = 0;
+
+    /** As ImportSource::findings(). */
+    virtual std::vector<std::string> findings() const = 0;
+};
+
+std::unique_ptr<PacketDecoder> makeVelodyneDecoder(bool capture_clock);
+std::unique_ptr<PacketDecoder> makeOusterDecoder(
+    const ouster::SensorInfo& info, bool capture_clock);
+}  // namespace taut

@@ -1,0 +1,184 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "PcapWriter.h"
+#include "import_support.h"
+#include "temporary_folder.h"
+
+namespace taut::test
+{
+namespace
+{
+using testing::HasSubstr;
+using velodyne::Model;
+
+/** Packets of whole firing sequences of a head that turns at 10 Hz; azimuth 0 at `begin`. */
+std::vector<velodyne::Packet> packets(Model model, Time begin, int count)
+{
+    velodyne::PacketWriter writer(model);
+    const auto& pattern = velodyne::firingPattern(model);
+    std::vector<velodyne::Packet> all;
+    for (int i = 0; static_cast<int>(all.size()) < count; i++)
+    {
+        const auto since = std::llround(i * pattern.sequence_period);
+        std::vector<velodyne::Cell> cells(static_cast<std::size_t>(pattern.lasers));
+        for (auto& cell : cells) cell = {5 + 1e-3 * i, static_cast<std::uint8_t>(i)};
+        writer.add(begin + since, std::fmod(3600 * toSeconds(since), 360), cells);
+        for (const auto& packet : writer.take()) all.push_back(packet);
+    }
+    return all;
+}
+
+class AVelodyneCapture : public testing::Test
+{
+ protected:
+    void write(const std::vector<velodyne::Packet>& all, Duration device_ahead = 0)
+    {
+        PcapWriter pcap(path_);
+        velodyne::PacketClock clock;
+        for (const auto& packet : all)
+        {
+            const Duration since =
+                clock.sinceFirst(velodyne::packetInfo(packet.data()).microseconds);
+            pcap.write(kStart + since - device_ahead + kPacket, 2368, packet);
+        }
+    }
+
+    static constexpr Duration kPacket = 1'327'104;
+    TemporaryFolder folder_;
+    const std::string path_ = folder_ / "a.pcap";
+};
+
+TEST_F(AVelodyneCapture, IsCutWhereTheAzimuthWrapsAndKeepsEveryPacket)
+{
+    for (const Model model : {Model::Vlp16, Model::Hdl32})
+    {
+        const auto sent = packets(model, kStart, 460);
+        write(sent);
+        const Imported all = importAll(path_);
+        EXPECT_EQ(all.failure, "");
+        EXPECT_EQ(all.packet_scans.size(), model == Model::Vlp16 ? 7U : 3U);
+        std::vector<velodyne::Packet> received;
+        for (const PacketScan& scan : all.packet_scans)
+        {
+            for (std::size_t i = 1; i < scan.packets.size(); i++)
+                EXPECT_GT(
+                    velodyne::blockAzimuth(scan.packets[i].data(), 0),
+                    velodyne::blockAzimuth(scan.packets[i - 1].data(), 0));
+            received.insert(received.end(), scan.packets.begin(), scan.packets.end());
+        }
+        EXPECT_TRUE(received == sent);
+        EXPECT_EQ(all.warnings.counts().size(), 0U);
+    }
+}
+
+TEST_F(AVelodyneCapture, IsStampedByTheSensorInTheHourOfTheCaptureOrByTheCapture)
+{
+    const Time hour = kStart / 3'600'000'000'000 * 3'600'000'000'000;
+    const Time begin = hour + 3'599'950 * kMillisecond;  // runs over the full hour
+    const auto sent = packets(Model::Vlp16, begin, 200);
+    {
+        PcapWriter pcap(path_);
+        for (std::size_t i = 0; i < sent.size(); i++)
+            pcap.write(
+                begin + (static_cast<Time>(i) + 1) * kPacket + 80 * kMillisecond, 2368, sent[i]);
+    }
+    const Imported all = importAll(path_);
+    ASSERT_EQ(all.packet_scans.size(), 3U);
+    EXPECT_EQ(all.packet_scans[0].stamp, begin);
+    EXPECT_NEAR(toSeconds(all.packet_scans[2].stamp - begin), 0.2, 0.0014);
+
+    ImportOptions options;
+    options.capture_clock = true;
+    const Imported by_capture = importAll(path_, options);
+    ASSERT_EQ(by_capture.packet_scans.size(), 3U);
+    for (int i = 0; i < 3; i++)
+        EXPECT_NEAR(
+            toSeconds(by_capture.packet_scans[i].stamp - all.packet_scans[i].stamp), 0.080, 2e-6);
+}
+
+TEST_F(AVelodyneCapture, OfTwoSensorsKeepsTheFirstAndSaysSo)
+{
+    const auto sent = packets(Model::Vlp16, kStart, 160);
+    {
+        PcapWriter pcap(path_);
+        for (const auto& packet : sent)
+        {
+            pcap.from = 0xc0a801c9;
+            pcap.write(kStart, 2368, packet);
+            pcap.from++;
+            pcap.write(kStart, 2368, packet);
+        }
+    }
+    const Imported all = importAll(path_);
+    std::size_t received = 0;
+    for (const auto& scan : all.packet_scans) received += scan.packets.size();
+    EXPECT_EQ(received, sent.size());
+    ASSERT_EQ(all.warnings.count("second_sensor"), 1U);
+    EXPECT_THAT(all.warnings.kept()[0].text, HasSubstr("192.168.1.202"));
+}
+
+TEST_F(AVelodyneCapture, CutOffGivesWhatIsThereAndSaysSo)
+{
+    write(packets(Model::Vlp16, kStart, 160));
+    std::filesystem::resize_file(path_, std::filesystem::file_size(path_) - 700);
+    const Imported all = importAll(path_);
+    EXPECT_EQ(all.packet_scans.size(), 3U);
+    EXPECT_EQ(all.warnings.count("pcap_truncated"), 1U);
+}
+
+TEST_F(AVelodyneCapture, WithASnapLengthIsNoCaptureOfASensor)
+{
+    {
+        PcapWriter pcap(path_);
+        pcap.snap_length = 96;
+        for (const auto& packet : packets(Model::Vlp16, kStart, 3))
+            pcap.write(kStart, 2368, packet);
+    }
+    EXPECT_THAT(importAll(path_).failure, HasSubstr("no packet of a known sensor"));
+}
+
+TEST_F(AVelodyneCapture, OfAnUnknownModelIsNamed)
+{
+    auto sent = packets(Model::Vlp16, kStart, 3);
+    for (auto& packet : sent) packet[velodyne::kPacketBytes - 1] = 0x28;
+    {
+        PcapWriter pcap(path_);
+        for (const auto& packet : sent) pcap.write(kStart, 2368, packet);
+    }
+    EXPECT_THAT(importAll(path_).failure, HasSubstr("model 0x28"));
+}
+
+TEST_F(AVelodyneCapture, KeepsItsGoodPacketsWhereOneIsDamaged)
+{
+    auto sent = packets(Model::Vlp16, kStart, 160);
+    sent[50][300] = 0;  // flag of a block
+    write(sent);
+    const Imported all = importAll(path_);
+    std::size_t received = 0;
+    for (const auto& scan : all.packet_scans) received += scan.packets.size();
+    EXPECT_EQ(received, sent.size() - 1);
+    EXPECT_EQ(all.warnings.count("packet_invalid"), 1U);
+}
+
+TEST_F(AVelodyneCapture, ThatLostPacketsSaysHowMany)
+{
+    auto sent = packets(Model::Vlp16, kStart, 160);
+    sent.erase(sent.begin() + 40, sent.begin() + 43);
+    write(sent);
+    const Imported all = importAll(path_);
+    EXPECT_THAT(all.findings, testing::Contains(HasSubstr("3 packets are missing")));
+}
+
+TEST_F(AVelodyneCapture, WithoutAnyPacketIsNamed)
+{
+    {
+        PcapWriter pcap(path_);
+    }
+    EXPECT_THAT(importAll(path_).failure, HasSubstr("0 records"));
+    std::filesystem::resize_file(path_, 10);
+    EXPECT_THAT(importAll(path_).failure, HasSubstr("cannot read the capture"));
+}
+}  // namespace
+}  // namespace taut::test
