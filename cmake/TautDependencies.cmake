@@ -6,6 +6,14 @@ foreach(lib core rtti containers system io serialization math poses obs maps img
   find_package(mrpt-${lib} 2.5 REQUIRED)
 endforeach()
 find_package(ZLIB 1.2 REQUIRED)          # zlib1g-dev 1.2.13
+find_package(BZip2 1.0 REQUIRED)         # libbz2-dev 1.0.8: chunks of bags
+find_package(SQLite3 3.40 REQUIRED)      # libsqlite3-dev 3.40.1: bags
+# liblz4-dev 1.9.4, libzstd-dev 1.5.4: chunks of bags
+foreach(lib lz4 zstd)
+  find_library(${lib}_LIBRARY ${lib} REQUIRED)
+endforeach()
+find_path(lz4_INCLUDE_DIR lz4frame.h REQUIRED)
+find_path(zstd_INCLUDE_DIR zstd.h REQUIRED)
 find_package(octomap 1.9 REQUIRED)      # liboctomap-dev 1.9.7
 find_package(NLopt 2.7 REQUIRED CONFIG) # libnlopt-cxx-dev 2.7.1
 find_package(nanoflann 1.4 REQUIRED)    # libnanoflann-dev 1.4.3

@@ -4,11 +4,24 @@
 
 namespace taut
 {
+/** Which end of its sweep the stamp of a cloud in a bag is. */
+enum class ScanStamp
+{
+    Detect,  //!< as the times of the points tell
+    Start,
+    End
+};
+
 /** What a user can say about a recording that is to be imported. A format takes what concerns it.
  */
 struct ImportOptions
 {
     std::string ouster_json;     //!< description of the Ouster; empty: the capture's, with .json
     bool capture_clock = false;  //!< stamps by the capturing computer instead of the sensor
+
+    /** Bags: regular expressions (ECMAScript) for the whole name of a topic. */
+    std::string lidar_topic;  //!< empty: the only one of point clouds
+    std::string imu_topic;    //!< empty: the only one of readings, if there is one
+    ScanStamp scan_stamp = ScanStamp::Detect;
 };
 }  // namespace taut

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "WireReader.h"
+#include "taut/core/Imu.h"
+
+namespace taut::bag
+{
+/** sensor_msgs/PointField: where a value lies in a point. */
+struct PointField
+{
+    std::string name;
+    std::uint32_t offset = 0;   //!< [bytes]
+    std::uint8_t datatype = 0;  //!< 1 int8, 2 uint8, 3 int16, 4 uint16, 5 int32, 6 uint32, 7
+                                //!< float32, 8 float64
+};
+
+/** sensor_msgs/PointCloud2; `data` lies in the message. */
+struct PointCloud2
+{
+    Time stamp = 0;
+    std::uint32_t height = 0, width = 0;
+    std::vector<PointField> fields;
+    bool big_endian = false;
+    std::uint32_t point_step = 0, row_step = 0;  //!< [bytes]
+    Bytes data;
+};
+
+/** One point of a Livox CustomMsg. */
+struct LivoxPoint
+{
+    std::uint32_t offset_time = 0;  //!< since Livox::timebase [ns]
+    float x = 0, y = 0, z = 0;      //!< [m]
+    std::uint8_t reflectivity = 0, line = 0;
+};
+
+/** livox_ros_driver/CustomMsg and livox_ros_driver2/CustomMsg, which are the same. */
+struct Livox
+{
+    Time stamp = 0;
+    std::uint64_t timebase = 0;  //!< time of the first point [ns]
+    std::vector<LivoxPoint> points;
+};
+
+/** All throw std::runtime_error if the bytes are no such message. */
+PointCloud2 readPointCloud2(WireReader reader);
+Livox readLivox(WireReader reader);
+/** sensor_msgs/Imu, in the units of the message. */
+ImuSample readImu(WireReader reader);
+}  // namespace taut::bag

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "Messages.h"
+#include "taut/core/Scan.h"
+
+namespace taut::bag
+{
+/** A cloud whose times are still as the message has them. */
+struct RawSweep
+{
+    Time header = 0;    //!< stamp of the message
+    Time received = 0;  //!< when the recorder took it
+    Time base = 0;      //!< to add to the points' times [ns]; 0 if those are all there is
+    std::vector<LidarPoint> points;  //!< finite, not at the origin; offsets not set
+    std::vector<double> times;       //!< of the points, in the field's unit; empty if it has none
+    std::string time_field;          //!< "t (uint32)"
+    double nominal_unit = 1;         //!< what that field usually has [ns]; 0 if it varies
+    int rings = 0;                   //!< as Scan::rings
+    std::size_t not_finite = 0;      //!< points left out
+};
+
+/** Finds x, y, z, intensity (or reflectivity), ring (line, channel, laser_id) and time (t, time,
+ * timestamp, offset_time, ...) by name. Throws std::runtime_error if the layout contradicts itself.
+ */
+RawSweep toRawSweep(const PointCloud2& cloud);
+RawSweep toRawSweep(const Livox& sweep);
+}  // namespace taut::bag

@@ -1,0 +1,184 @@
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "BagFile.h"
+#include "BagReader.h"
+
+/** \file Sqlite3Bag.cpp
+ * The sqlite3 container of ROS 2: a table of topics and one of messages, in the order of arrival.
+ */
+namespace taut::bag
+{
+namespace
+{
+class Sqlite3Bag : public BagReader
+{
+ public:
+    Sqlite3Bag(const std::string& path, WarningSink warn) : path_(path), warn_(std::move(warn))
+    {
+        sqlite3* raw = nullptr;
+        const int result = sqlite3_open_v2(path.c_str(), &raw, SQLITE_OPEN_READONLY, nullptr);
+        db_.reset(raw);
+        if (result != SQLITE_OK) fail();
+        // A row cannot be longer than the file, whatever a damaged one claims.
+        const auto size = std::filesystem::file_size(path);
+        sqlite3_limit(
+            raw, SQLITE_LIMIT_LENGTH,
+            static_cast<int>(std::min<std::uintmax_t>(size + 1024, 1'000'000'000)));
+        // So that a database that lost its end can be read as far as it goes; nothing is written.
+        sqlite3_exec(raw, "PRAGMA writable_schema=ON", nullptr, nullptr, nullptr);
+        checkLength(size);
+        first_id_ = now_id_ = idAt("MIN");
+        last_id_ = idAt("MAX");
+    }
+
+    std::vector<BagTopic> topics() override
+    {
+        std::vector<BagTopic> topics;
+        const auto rows =
+            prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
+        while (step(rows))
+        {
+            const bool cdr = textAt(rows, 3) == "cdr";
+            topics.push_back(
+                {textAt(rows, 1), cdr ? plainType(textAt(rows, 2)) : "", Wire::Cdr,
+                 isEmpty(sqlite3_column_int64(rows.get(), 0))});
+        }
+        return topics;
+    }
+
+    void choose(const std::vector<std::string>& topics) override
+    {
+        std::string names;
+        for (const auto& topic : topics)
+        {
+            const std::unique_ptr<char, decltype(&sqlite3_free)> quoted(
+                sqlite3_mprintf("%Q", topic.c_str()), &sqlite3_free);
+            names += (names.empty() ? "" : ",") + std::string(quoted.get());
+        }
+        where_ = " AND topics.name IN (" + names + ")";
+    }
+
+    std::optional<BagMessage> next() override
+    {
+        if (at_end_) return {};
+        try
+        {
+            // CROSS JOIN keeps the order: messages as they came, each with its topic.
+            if (!rows_)
+                rows_ = prepare(
+                    "SELECT messages.id, messages.timestamp, messages.data, topics.name "
+                    "FROM messages CROSS JOIN topics WHERE topics.id = messages.topic_id" +
+                    where_ + " ORDER BY messages.id");
+            if (step(rows_))
+            {
+                now_id_ = sqlite3_column_int64(rows_.get(), 0);
+                const auto* data =
+                    static_cast<const std::uint8_t*>(sqlite3_column_blob(rows_.get(), 2));
+                const auto size = static_cast<std::size_t>(sqlite3_column_bytes(rows_.get(), 2));
+                return BagMessage{
+                    textAt(rows_, 3),
+                    Wire::Cdr,
+                    sqlite3_column_int64(rows_.get(), 1),
+                    {data, data ? size : 0}};
+            }
+        }
+        catch (const std::runtime_error& e)
+        {
+            warn(
+                "bag_truncated", std::string(e.what()) + ": read up to message " +
+                                     std::to_string(now_id_) + " of " + std::to_string(last_id_));
+        }
+        at_end_ = true;
+        return {};
+    }
+
+    double progress() const override
+    {
+        return last_id_ > first_id_ ? static_cast<double>(now_id_ - first_id_) /
+                                          static_cast<double>(last_id_ - first_id_)
+                                    : 0;
+    }
+
+ private:
+    struct Close
+    {
+        void operator()(sqlite3* db) const { sqlite3_close_v2(db); }
+        void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+    };
+    using Statement = std::unique_ptr<sqlite3_stmt, Close>;
+
+    /** The file's head tells how many pages there should be. */
+    void checkLength(std::uintmax_t size)
+    {
+        BagFile file(path_);
+        std::vector<std::uint8_t> buffer;
+        if (size < 100) throw std::runtime_error(path_ + " is no sqlite3 database");
+        const Bytes head = file.read(100, buffer);
+        const auto page = ByteReader::numberAt<std::uint16_t>(head.data + 16, true);
+        const auto pages = ByteReader::numberAt<std::uint32_t>(head.data + 28, true);
+        const std::uintmax_t expected = std::uintmax_t{page == 1 ? 65536U : page} * pages;
+        if (expected > size)
+            warn(
+                "bag_truncated", path_ + " has " + std::to_string(size) + " of " +
+                                     std::to_string(expected) + " bytes; what is there is read");
+    }
+
+    /** The first or last identifier of a message; 0 if the database is damaged there. */
+    std::int64_t idAt(const std::string& which)
+    {
+        const auto row = prepare("SELECT " + which + "(id) FROM messages");
+        return sqlite3_step(row.get()) == SQLITE_ROW ? sqlite3_column_int64(row.get(), 0) : 0;
+    }
+    /** True if the topic surely has no message. */
+    bool isEmpty(std::int64_t topic)
+    {
+        const auto row = prepare(
+            "SELECT 1 FROM messages WHERE topic_id = " + std::to_string(topic) + " LIMIT 1");
+        return sqlite3_step(row.get()) == SQLITE_DONE;
+    }
+
+    Statement prepare(const std::string& sql)
+    {
+        sqlite3_stmt* raw = nullptr;
+        if (sqlite3_prepare_v2(db_.get(), sql.c_str(), -1, &raw, nullptr) != SQLITE_OK) fail();
+        return Statement(raw);
+    }
+    bool step(const Statement& statement)
+    {
+        const int result = sqlite3_step(statement.get());
+        if (result == SQLITE_ROW) return true;
+        if (result != SQLITE_DONE) fail();
+        return false;
+    }
+    static std::string textAt(const Statement& row, int column)
+    {
+        const auto* text = sqlite3_column_text(row.get(), column);
+        return text ? reinterpret_cast<const char*>(text) : std::string();
+    }
+    [[noreturn]] void fail()
+    {
+        throw std::runtime_error(
+            path_ + " cannot be read as a ROS 2 bag: " + sqlite3_errmsg(db_.get()));
+    }
+    void warn(const std::string& kind, const std::string& text) const
+    {
+        if (warn_) warn_({0, kind, text});
+    }
+
+    std::string path_, where_;
+    WarningSink warn_;
+    std::unique_ptr<sqlite3, Close> db_;
+    Statement rows_;  // after the database, to go before it
+    std::int64_t first_id_ = 0, last_id_ = 0, now_id_ = 0;
+    bool at_end_ = false;
+};
+}  // namespace
+
+std::unique_ptr<BagReader> openSqlite3Bag(const std::string& path, const WarningSink& warn)
+{
+    return std::make_unique<Sqlite3Bag>(path, warn);
+}
+}  // namespace taut::bag

@@ -1,0 +1,57 @@
+#include "TopicChoice.h"
+
+#include <algorithm>
+#include <regex>
+#include <stdexcept>
+
+namespace taut::bag
+{
+namespace
+{
+std::regex compile(const std::string& expression, const std::string& option)
+{
+    try
+    {
+        return std::regex(expression, std::regex::ECMAScript);
+    }
+    catch (const std::regex_error& e)
+    {
+        throw std::runtime_error(
+            option + " '" + expression + "' is not a regular expression: " + e.what());
+    }
+}
+}  // namespace
+
+std::string describe(const std::vector<BagTopic>& topics)
+{
+    std::string text;
+    for (const BagTopic& topic : topics)
+        text += (text.empty() ? "" : ", ") + topic.name + " (" +
+                (topic.type.empty() ? "no ROS message" : topic.type) + ")";
+    return text.empty() ? "none" : text;
+}
+
+std::optional<BagTopic> chooseTopic(
+    const std::vector<BagTopic>& topics, const std::vector<std::string>& types,
+    const std::string& expression, const std::string& option)
+{
+    const std::regex regex = compile(expression, option);
+    std::vector<BagTopic> found;
+    for (const BagTopic& topic : topics)
+        if (std::find(types.begin(), types.end(), topic.type) != types.end() &&
+            (expression.empty() || std::regex_match(topic.name, regex)))
+            found.push_back(topic);
+    if (found.size() > 1)
+        found.erase(
+            std::remove_if(found.begin(), found.end(), [](const BagTopic& t) { return t.empty; }),
+            found.end());
+    if (found.size() > 1)
+        throw std::runtime_error(
+            "several topics could be meant: " + describe(found) + "; " + option + " chooses");
+    if (found.empty() && !expression.empty())
+        throw std::runtime_error(
+            option + " '" + expression +
+            "' is no topic that can be read; there are: " + describe(topics));
+    return found.empty() ? std::nullopt : std::optional(found.front());
+}
+}  // namespace taut::bag
