@@ -38,7 +38,10 @@ class Import
     /** The exit code. */
     int execute()
     {
-        const auto source = openImportSource(options_.source, options_.import, warnings_.sink());
+        ImportOptions import = options_.import;
+        if (rig_.imu.accel_scale != 1) import.accel_scale = rig_.imu.accel_scale;
+        if (rig_.imu.gyro_scale != 1) import.gyro_scale = rig_.imu.gyro_scale;
+        const auto source = openImportSource(options_.source, import, warnings_.sink());
         RawlogWriterConfig config;
         config.lidar_label = options_.lidar_label;
         config.imu_label = options_.imu_label;

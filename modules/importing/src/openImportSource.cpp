@@ -3,6 +3,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "CheckedSource.h"
 #include "ImportFormat.h"
 
 namespace taut
@@ -38,7 +39,9 @@ std::unique_ptr<ImportSource> openImportSource(
     std::string known;
     for (const ImportFormat& format : importFormats())
     {
-        if (format.matches(recording)) return format.open(recording, options, warn);
+        if (format.matches(recording))
+            return std::make_unique<CheckedSource>(
+                format.open(recording, options, warn), options, warn);
         known += std::string(known.empty() ? "" : ", ") + format.name;
     }
     throw std::runtime_error("'" + path + "' is no recording that can be imported: " + known);

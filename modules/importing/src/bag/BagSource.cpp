@@ -8,7 +8,6 @@
 #include "BagKind.h"
 #include "BagReader.h"
 #include "Decompress.h"
-#include "ImuUnits.h"
 #include "SweepClock.h"
 #include "TopicChoice.h"
 
@@ -19,8 +18,7 @@ namespace fs = std::filesystem;
 
 namespace
 {
-constexpr std::size_t kSweepsToJudge = 10, kMostSweeps = 20;
-constexpr Duration kReadingsToJudge = 1'000'000'000;
+constexpr std::size_t kSweepsToJudge = 10;
 constexpr Time kLatest = 4'600'000'000'000'000'000;  // ns: beyond what a stamp can be
 
 const std::string kImuType = "sensor_msgs/Imu";
@@ -76,38 +74,25 @@ class BagSource : public ImportSource
     {
         std::vector<std::string> all = judged_;
         all.insert(all.end(), clock_.findings().begin(), clock_.findings().end());
-        all.insert(all.end(), units_.findings().begin(), units_.findings().end());
         return all;
     }
 
  private:
-    /** Decoded, but not yet in known units. */
+    /** Decoded, but not yet with a known clock. */
     using Pending = std::variant<ImuSample, RawSweep>;
 
-    /** The first sweeps and readings, enough to judge them. */
+    /** The first sweeps, enough to judge them. */
     void readAhead()
     {
         learned_ = true;
         std::vector<const RawSweep*> sweeps;
-        ImuSamples readings;
-        const auto enough = [&]
-        {
-            const bool judged =
-                !imu_ ||
-                (!readings.empty() && readings.back().t - readings.front().t >= kReadingsToJudge);
-            return sweeps.size() >= (judged ? kSweepsToJudge : kMostSweeps);
-        };
-        while (!enough())
+        while (sweeps.size() < kSweepsToJudge)
         {
             auto pending = read();
             if (!pending) break;
             ahead_.push_back(std::move(*pending));  // a deque leaves the others where they are
-            if (const auto* sweep = std::get_if<RawSweep>(&ahead_.back()))
-                sweeps.push_back(sweep);
-            else
-                readings.push_back(std::get<ImuSample>(ahead_.back()));
+            if (const auto* sweep = std::get_if<RawSweep>(&ahead_.back())) sweeps.push_back(sweep);
         }
-        units_.learn(readings, warn_);
         if (sweeps.empty()) return;
         try
         {
@@ -165,7 +150,7 @@ class BagSource : public ImportSource
                 report(sample->t, "imu_invalid", imu_->name, "a value is not finite");
                 return {};
             }
-            return units_.toSi(*sample);
+            return *sample;
         }
         auto& sweep = std::get<RawSweep>(pending);
         const Time header = sweep.header;
@@ -230,7 +215,6 @@ class BagSource : public ImportSource
     BagTopic lidar_;
     std::optional<BagTopic> imu_;
     SweepClock clock_;
-    ImuUnits units_;
     std::vector<std::string> judged_;
     std::deque<Pending> ahead_;
     bool learned_ = false, ended_ = false;

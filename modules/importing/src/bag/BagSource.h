@@ -21,7 +21,6 @@ bool isBag(const Recording& recording);
  *   message_invalid    a message that is not what its type says was left out
  *   no_stamp, imu_time, scan_time   a stamp of zero, or not later than the one before (left out)
  *   imu_invalid        values that are not finite (left out)
- *   imu_units          values that contradict m/s^2, g and rad/s (used as they are)
  *   no_imu             no reading in the whole bag
  *   scan_stamp         which end of a sweep its stamp means is contradicted or cannot be told
  *   scan_bad_points    more than 5 % of the points not finite or with an impossible time (left out)

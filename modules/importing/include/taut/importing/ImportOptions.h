@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace taut
@@ -23,5 +24,8 @@ struct ImportOptions
     std::string lidar_topic;  //!< empty: the only one of point clouds
     std::string imu_topic;    //!< empty: the only one of readings, if there is one
     ScanStamp scan_stamp = ScanStamp::Detect;
+
+    /** Factors to m/s^2 and rad/s; nothing: judged by gravity. */
+    std::optional<double> accel_scale, gyro_scale;
 };
 }  // namespace taut

@@ -1,0 +1,164 @@
+#include "CheckedSource.h"
+
+#include <utility>
+
+namespace taut
+{
+namespace
+{
+constexpr Duration kJudged = 2'000'000'000;
+constexpr std::size_t kMostScansHeld = 25;
+constexpr std::size_t kFewestSamples = 10;
+
+std::string line(
+    const std::string& what, const std::string& unit, double scale, const std::string& reason)
+{
+    return what + " in " + unit + (scale == 1 ? "" : ", converted") + " (" + reason + ")";
+}
+}  // namespace
+
+CheckedSource::CheckedSource(
+    std::unique_ptr<ImportSource> source, const ImportOptions& options, WarningSink warn)
+    : source_(std::move(source)), options_(options), warn_(std::move(warn))
+{
+}
+
+std::optional<ImportedItem> CheckedSource::next()
+{
+    while (!judged_)
+    {
+        auto item = nextValid();
+        if (item) held_.push_back(std::move(*item));
+        if (!item || held_scans_ >= kMostScansHeld ||
+            (last_sample_ && *last_sample_ - first_sample_ >= kJudged))
+            judge();
+    }
+    std::optional<ImportedItem> item;
+    if (held_.empty())
+    {
+        item = nextValid();
+    }
+    else
+    {
+        item = std::move(held_.front());
+        held_.pop_front();
+    }
+    if (!item) finish();
+    if (auto* sample = item ? std::get_if<ImuSample>(&*item) : nullptr) convert(*sample);
+    return item;
+}
+
+void CheckedSource::convert(ImuSample& sample)
+{
+    sample.accel *= units_.accel_scale;
+    sample.gyro *= units_.gyro_scale;
+    if (sample.gyro.norm() <= ImuUnitJudge::kFastestRate || std::exchange(too_fast_, true)) return;
+    warn(
+        sample.t, "imu_units",
+        "a rate of " + std::to_string(sample.gyro.norm()) +
+            " rad/s: no gyro gets there; left as it is");
+}
+
+std::optional<ImportedItem> CheckedSource::nextValid()
+{
+    while (auto item = source_->next())
+        if (std::visit([this](const auto& i) { return valid(i); }, *item))
+        {
+            if (!std::holds_alternative<ImuSample>(*item)) held_scans_++;
+            return item;
+        }
+    return {};
+}
+
+bool CheckedSource::valid(const ImuSample& sample)
+{
+    if (!sample.accel.allFinite() || !sample.gyro.allFinite())
+    {
+        warn(sample.t, "imu_invalid", "a value of the IMU is not finite; left out");
+        return false;
+    }
+    if (!isLater(sample.t, last_sample_, "imu_time", "sample of the IMU")) return false;
+    if (samples_++ == 0) first_sample_ = sample.t;
+    judge_.add(sample);
+    return true;
+}
+
+bool CheckedSource::isLater(
+    Time t, std::optional<Time>& last, const std::string& kind, const std::string& what)
+{
+    if (last && t <= *last)
+    {
+        warn(
+            t, kind,
+            "a " + what + " is stamped " + std::to_string(toSeconds(*last - t)) +
+                " s before the one before it; left out");
+        return false;
+    }
+    last = t;
+    return true;
+}
+
+void CheckedSource::judge()
+{
+    judged_ = true;
+    if (samples_ >= kFewestSamples) units_ = judge_.units();
+    if (options_.accel_scale)
+    {
+        units_.accel_scale = *options_.accel_scale;
+        units_.accel_name = "units of " + std::to_string(units_.accel_scale) + " m/s^2";
+        units_.accel_reason = "as told";
+        units_.accel_fits = true;
+    }
+    if (options_.gyro_scale)
+    {
+        units_.gyro_scale = *options_.gyro_scale;
+        units_.gyro_name = "units of " + std::to_string(units_.gyro_scale) + " rad/s";
+        units_.gyro_reason = "as told";
+    }
+    if (!units_.accel_fits)
+        warn(
+            first_sample_, "imu_units",
+            "specific force: " + units_.accel_reason +
+                ", near gravity in no unit; left as it is: give accel_scale in a rig file");
+}
+
+/* What the first seconds could not tell, the whole recording may. */
+void CheckedSource::finish()
+{
+    if (std::exchange(finished_, true) || samples_ < kFewestSamples) return;
+    const ImuUnits all = judge_.units();
+    const auto contradict = [this](
+                                const std::string& what, const std::string& taken,
+                                const std::string& later, const std::string& reason)
+    {
+        warn(
+            first_sample_, "imu_units",
+            what + " were taken as " + taken + ", but later ones speak for " + later + " (" +
+                reason + "): tell the unit by a rig file and import again");
+    };
+    if (!options_.gyro_scale && all.gyro_scale != units_.gyro_scale)
+        contradict("the rates", units_.gyro_name, all.gyro_name, all.gyro_reason);
+    if (!options_.accel_scale && all.accel_scale != units_.accel_scale)
+        contradict("the forces", units_.accel_name, all.accel_name, all.accel_reason);
+}
+
+std::vector<std::string> CheckedSource::findings() const
+{
+    auto lines = source_->findings();
+    if (samples_ == 0) return lines;
+    if (samples_ < kFewestSamples)
+    {
+        lines.emplace_back("IMU: too few samples to judge their units");
+        return lines;
+    }
+    lines.push_back(
+        line("specific force", units_.accel_name, units_.accel_scale, units_.accel_reason));
+    lines.push_back(line("rates", units_.gyro_name, units_.gyro_scale, units_.gyro_reason));
+    return lines;
+}
+
+void CheckedSource::warn(Time t, const std::string& kind, const std::string& text) const
+{
+    if (warn_) warn_({t, kind, text});
+}
+}  // namespace taut

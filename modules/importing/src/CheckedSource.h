@@ -1,0 +1,55 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+
+#include "ImuUnitJudge.h"
+#include "taut/core/Warning.h"
+#include "taut/importing/ImportOptions.h"
+#include "taut/importing/ImportSource.h"
+
+namespace taut
+{
+/** Stands before every source: judges the units of the IMU by its first 2 s and converts to m/s^2
+ * and rad/s, and lets nothing pass that goes back in time or is not finite. Warnings:
+ *   imu_units     values that fit no unit, or another one than the first seconds said
+ *   imu_time      stamp of the IMU equal to or earlier than the one before (left out)
+ *   imu_invalid   values that are not finite (left out)
+ *   scan_time     stamp of a scan equal to or earlier than the one before (left out) */
+class CheckedSource : public ImportSource
+{
+ public:
+    CheckedSource(
+        std::unique_ptr<ImportSource> source, const ImportOptions& options, WarningSink warn);
+
+    std::optional<ImportedItem> next() override;
+    double progress() const override { return source_->progress(); }
+    std::vector<std::string> findings() const override;
+
+ private:
+    std::optional<ImportedItem> nextValid();
+    bool valid(const ImuSample& sample);
+    bool valid(const Scan& scan) { return isLater(scan.stamp, last_scan_, "scan_time", "scan"); }
+    bool valid(const PacketScan& scan)
+    {
+        return isLater(scan.stamp, last_scan_, "scan_time", "scan");
+    }
+    bool isLater(
+        Time t, std::optional<Time>& last, const std::string& kind, const std::string& what);
+    void judge();
+    void convert(ImuSample& sample);
+    void finish();
+    void warn(Time t, const std::string& kind, const std::string& text) const;
+
+    std::unique_ptr<ImportSource> source_;
+    ImportOptions options_;
+    WarningSink warn_;
+    std::deque<ImportedItem> held_;  // until the units are known
+    bool judged_ = false, finished_ = false, too_fast_ = false;
+    ImuUnitJudge judge_;
+    std::size_t samples_ = 0, held_scans_ = 0;
+    Time first_sample_ = 0;
+    ImuUnits units_;
+    std::optional<Time> last_sample_, last_scan_;
+};
+}  // namespace taut
