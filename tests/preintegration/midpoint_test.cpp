@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include "steady_turn.h"
 #include "taut/factors/ImuFactor.h"
 #include "taut/preintegration/MidpointPreintegrator.h"
@@ -293,6 +295,21 @@ TEST(MidpointPreintegrator, AGapInTheSamplesInflatesTheCovariance)
     EXPECT_GT(with_gap(3, 3), 10 * complete(3, 3));
     // One standard deviation is what the unknown motion may do in the gap.
     EXPECT_NEAR(std::sqrt(with_gap(8, 8)), preintegrator.config.gap_rate * 0.042, 0.005);
+}
+
+TEST(MidpointPreintegrator, AGapOfAWholeSweepLeavesEveryDirectionItsOwnUncertainty)
+{
+    // One step: its position must not be tied to its velocity.
+    const PreintegratedImu chain = integrate(SteadyTurn(), 0, kSweep, kSweep);
+    ASSERT_EQ(chain.knots.size(), 2u);
+    const Eigen::Matrix<double, 9, 1> sigma = chain.covariance.diagonal().cwiseSqrt();
+    const Eigen::Matrix<double, 9, 9> correlation =
+        sigma.asDiagonal().inverse() * chain.covariance * sigma.asDiagonal().inverse();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(correlation);
+    EXPECT_GT(eigen.eigenvalues()[0], 0.01);
+    // Of white noise in the acceleration: variance of the position S dt^3 / 3, covariance with the
+    // velocity S dt^2 / 2.
+    EXPECT_NEAR(correlation(0, 3), -std::sqrt(3) / 2, 0.01);
 }
 
 TEST(MidpointPreintegrator, RefusesToIntegrateNothing)
