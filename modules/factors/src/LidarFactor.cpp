@@ -1,12 +1,15 @@
 #include "taut/factors/LidarFactor.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+
+#include "taut/factors/SampledPath.h"
 
 namespace taut
 {
 namespace
 {
-constexpr std::size_t kChunk = 256;           // features
+constexpr std::size_t kChunk = 8;             // intervals between nodes
 constexpr Duration kNodeSpacing = 2'500'000;  // [ns] between exact derivatives of the path
 constexpr int kPathSize = 2 * NavState::kSize;
 
@@ -36,47 +39,29 @@ double variance(const Correspondence& c, const LidarNoiseConfig& noise, double b
 }
 }  // namespace
 
-/** Sums of one chunk: kept apart and added in order, so that the total does not depend on threads.
- */
-struct LidarFactor::Partial
+/** Normal equations of the points between two nodes of the path, in the poses at both: 6 x 6 blocks
+ * and 6 rows each. */
+struct LidarFactor::Interval
 {
-    Eigen::Matrix<double, kPathSize, kPathSize> H = decltype(H)::Zero();
-    Eigen::Matrix<double, kPathSize, 1> g = decltype(g)::Zero();
+    using Block = Eigen::Matrix<double, 6, 6>;
+    using Row = Eigen::Matrix<double, 6, 1>;
+    Block H_begin = Block::Zero(), H_both = Block::Zero(), H_end = Block::Zero();
+    Row g_begin = Row::Zero(), g_end = Row::Zero();
     double cost = 0;
-};
 
-namespace
-{
-/** Normal equations in the poses at both nodes of an interval (12 entries), carried to the states
- * when the interval is left. */
-struct Interval
-{
-    Time begin = 0;
-    PathJacobian at_begin, at_end;
-    Eigen::Matrix<double, 12, 12> H;
-    Eigen::Matrix<double, 12, 1> g;
-
-    void enter(const SweepPath& path, Time t, std::size_t& hint)
+    /** A row of a residual r with weight w at a share of the interval: the derivative J by the pose
+     * there is shared between both nodes. */
+    void add(const Row& J, double r, double w, double share)
     {
-        begin = t - ((t % kNodeSpacing) + kNodeSpacing) % kNodeSpacing;
-        path.poseAt(begin, hint, at_begin);
-        path.poseAt(begin + kNodeSpacing, hint, at_end);
-        H.setZero();
-        g.setZero();
-    }
-
-    void leave(
-        Eigen::Matrix<double, kPathSize, kPathSize>& H_out,
-        Eigen::Matrix<double, kPathSize, 1>& g_out) const
-    {
-        Eigen::Matrix<double, 12, kPathSize> J;
-        J << at_begin, at_end;
-        const Eigen::Matrix<double, 12, kPathSize> HJ = H.selfadjointView<Eigen::Lower>() * J;
-        H_out.noalias() += J.transpose() * HJ;
-        g_out.noalias() += J.transpose() * g;
+        const Row wJ = w * J;
+        const Block wJJ = wJ * J.transpose();
+        H_begin += (1 - share) * (1 - share) * wJJ;
+        H_both += share * (1 - share) * wJJ;
+        H_end += share * share * wJJ;
+        g_begin += (1 - share) * r * wJ;
+        g_end += share * r * wJ;
     }
 };
-}  // namespace
 
 LidarFactor::LidarFactor(
     const Features& features, const LidarNoiseConfig& noise, Executor& executor)
@@ -89,39 +74,34 @@ void LidarFactor::setCorrespondences(const std::vector<Correspondence>& correspo
     correspondences_ = correspondences;
 }
 
+SampledPath LidarFactor::sampled(const SweepPath& path) const
+{
+    if (features_.points.empty()) return {path, features_.stamp, features_.stamp};
+    return {path, timeOf(0), timeOf(features_.points.size() - 1)};
+}
+
 std::vector<Vector3d> LidarFactor::undistort(const SweepPath& path) const
 {
+    const SampledPath poses = sampled(path);
     std::vector<Vector3d> world(features_.points.size());
-    executor_.forChunks(
-        world.size(), kChunk,
-        [&](std::size_t, std::size_t begin, std::size_t end)
-        {
-            std::size_t hint = 0;
-            for (std::size_t i = begin; i < end; i++)
-                world[i] = path.poseAt(timeOf(i), hint) *
-                           Vector3d(features_.points[i].position.cast<double>());
-        });
+    for (std::size_t i = 0; i < world.size(); i++)
+        world[i] = poses.poseAt(timeOf(i)) * Vector3d(features_.points[i].position.cast<double>());
     return world;
 }
 
-void LidarFactor::linearizeChunk(
-    const SweepPath& path, double balance, std::size_t begin, std::size_t end, Partial& out) const
+LidarFactor::Interval LidarFactor::linearizeInterval(
+    const SampledPath& poses, double balance, Time begin) const
 {
-    Interval interval;
-    bool inside = false;
-    std::size_t hint = 0, node_hint = 0;
-    for (std::size_t i = begin; i < end; i++)
+    Interval out;
+    const auto first = std::lower_bound(
+        features_.points.begin(), features_.points.end(), begin,
+        [&](const Feature& f, Time t) { return features_.stamp + f.offset < t; });
+    for (auto i = static_cast<std::size_t>(first - features_.points.begin());
+         i < features_.points.size() && timeOf(i) < begin + kNodeSpacing; i++)
     {
         const Correspondence& c = correspondences_[i];
         if (c.surface == Surface::None) continue;
-        const Time t = timeOf(i);
-        if (!inside || t >= interval.begin + kNodeSpacing)
-        {
-            if (inside) interval.leave(out.H, out.g);
-            interval.enter(path, t, node_hint);
-            inside = true;
-        }
-        const Pose pose = path.poseAt(t, hint);
+        const Pose pose = poses.poseAt(timeOf(i));
         const Vector3d x = features_.points[i].position.cast<double>();
         const auto P = projection(c);
         const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1> r = P * (pose * x - c.point);
@@ -131,51 +111,76 @@ void LidarFactor::linearizeChunk(
         const double w = noise_.kernel.weight(e2) / s2;
         out.cost += 0.5 * noise_.kernel.rho(e2);
 
-        // dy = dp - R [x]^ dtheta, shared between the nodes by the share of time.
+        // dy = dp - R [x]^ dtheta
         const double share =
-            static_cast<double>(t - interval.begin) / static_cast<double>(kNodeSpacing);
-        const Matrix3d by_theta = -pose.R * hat(x);
+            static_cast<double>(timeOf(i) - begin) / static_cast<double>(kNodeSpacing);
         for (int k = 0; k < r.size(); k++)
         {
-            Eigen::Matrix<double, 6, 1> J6;
-            J6 << P.row(k).transpose(), by_theta.transpose() * P.row(k).transpose();
-            Eigen::Matrix<double, 12, 1> J;
-            J << (1 - share) * J6, share * J6;
-            interval.H.selfadjointView<Eigen::Lower>().rankUpdate(J, w);
-            interval.g += J * (w * r[k]);
+            const Vector3d n = P.row(k);
+            Interval::Row J;
+            J << n, x.cross(pose.R.transpose() * n);
+            out.add(J, r[k], w, share);
         }
     }
-    if (inside) interval.leave(out.H, out.g);
+    return out;
 }
 
 double LidarFactor::linearize(
     const SweepPath& path, double balance, ProblemMatrix& hessian, ProblemVector& gradient) const
 {
-    std::vector<Partial> partial(Executor::chunks(features_.points.size(), kChunk));
+    if (features_.points.empty()) return 0;
+    const Time begin = timeOf(0);
+    const auto count =
+        static_cast<std::size_t>((timeOf(features_.points.size() - 1) - begin) / kNodeSpacing + 1);
+    const SampledPath poses = sampled(path);
+    std::vector<Interval> intervals(count);
+    Eigen::MatrixXd J(6 * (count + 1), kPathSize);  // derivative of the pose at each node
     executor_.forChunks(
-        features_.points.size(), kChunk,
-        [&](std::size_t chunk, std::size_t begin, std::size_t end)
-        { linearizeChunk(path, balance, begin, end, partial[chunk]); });
+        count + 1, kChunk,
+        [&](std::size_t, std::size_t first, std::size_t last)
+        {
+            std::size_t hint = 0;
+            PathJacobian at_node;
+            for (std::size_t i = first; i < last; i++)
+            {
+                const Time node = begin + static_cast<Duration>(i) * kNodeSpacing;
+                path.poseAt(node, hint, at_node);
+                J.middleRows<6>(static_cast<Eigen::Index>(6 * i)) = at_node;
+                if (i < count) intervals[i] = linearizeInterval(poses, balance, node);
+            }
+        });
+
+    Eigen::MatrixXd HJ = Eigen::MatrixXd::Zero(J.rows(), kPathSize);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(J.rows());
     double cost = 0;
-    for (const Partial& p : partial)
+    for (std::size_t i = 0; i < count; i++)
     {
-        hessian += p.H;
-        gradient += p.g;
-        cost += p.cost;
+        const auto at = static_cast<Eigen::Index>(6 * i);
+        const Interval& in = intervals[i];
+        HJ.middleRows<6>(at) +=
+            in.H_begin * J.middleRows<6>(at) + in.H_both * J.middleRows<6>(at + 6);
+        HJ.middleRows<6>(at + 6) +=
+            in.H_both * J.middleRows<6>(at) + in.H_end * J.middleRows<6>(at + 6);
+        g.segment<6>(at) += in.g_begin;
+        g.segment<6>(at + 6) += in.g_end;
+        cost += in.cost;
     }
+    const ProblemMatrix H = J.transpose() * HJ;
+    hessian += 0.5 * (H + H.transpose());  // the products round both halves differently
+    gradient.noalias() += J.transpose() * g;
     return cost;
 }
 
 template <class Body>
 void LidarFactor::forResiduals(const SweepPath& path, double balance, const Body& body) const
 {
-    std::size_t hint = 0;
+    const SampledPath poses = sampled(path);
     for (std::size_t i = 0; i < correspondences_.size(); i++)
     {
         const Correspondence& c = correspondences_[i];
         if (c.surface == Surface::None) continue;
         const Vector3d y =
-            path.poseAt(timeOf(i), hint) * Vector3d(features_.points[i].position.cast<double>());
+            poses.poseAt(timeOf(i)) * Vector3d(features_.points[i].position.cast<double>());
         const Vector3d d = y - c.point;
         const double along = c.direction.dot(d);
         const double r2 =

@@ -11,6 +11,8 @@
 
 namespace taut
 {
+class SampledPath;
+
 struct LidarNoiseConfig
 {
     /** Noise of a residual besides what the map says of the surface. The balance scales both. */
@@ -43,7 +45,7 @@ class LidarFactor
 
     /** Adds to the 30 x 30 Hessian and gradient of (x_{k-1}, x_k); returns the cost,
      * 1/2 sum rho(|r|^2 / (balance sigma)^2). The path's derivative is exact at nodes every few
-     * milliseconds and interpolated between them; the residuals are exact. */
+     * milliseconds and linear between them; the residuals are as exact as SampledPath. */
     double linearize(
         const SweepPath& path, double balance, ProblemMatrix& hessian,
         ProblemVector& gradient) const;
@@ -52,10 +54,9 @@ class LidarFactor
     LidarFit fit(const SweepPath& path, double balance) const;
 
  private:
-    struct Partial;
-    void linearizeChunk(
-        const SweepPath& path, double balance, std::size_t begin, std::size_t end,
-        Partial& out) const;
+    struct Interval;
+    SampledPath sampled(const SweepPath& path) const;
+    Interval linearizeInterval(const SampledPath& poses, double balance, Time begin) const;
     Time timeOf(std::size_t i) const { return features_.stamp + features_.points[i].offset; }
 
     template <class Body>
