@@ -9,6 +9,8 @@ using namespace taut::test;
 
 namespace
 {
+Executor single;
+
 constexpr std::size_t kFeatures = 3000;  // of a scan
 
 /** A walk through a long hall: the features of its scans, in the world. */
@@ -50,7 +52,7 @@ void kdTreeMapInsert(benchmark::State& state)
             map.clear();
             scan = 0;
         }
-        map.insert(walkOf200()[scan]);
+        map.insert(walkOf200()[scan], single);
         map.slide({0.3 * static_cast<double>(scan++), 0, 0});
     }
     state.counters["cells"] = static_cast<double>(map.size());
@@ -60,7 +62,7 @@ BENCHMARK(kdTreeMapInsert)->Unit(benchmark::kMillisecond)->Iterations(1000);
 void kdTreeMapMatch(benchmark::State& state)
 {
     KdTreeMap map;
-    for (const auto& features : walkOf200()) map.insert(features);
+    for (const auto& features : walkOf200()) map.insert(features, single);
     Executor executor(static_cast<int>(state.range(0)));
     std::vector<Correspondence> found;
     for (auto _ : state) map.match(walkOf200()[150], found, executor);

@@ -12,6 +12,8 @@ using namespace taut::test;
 
 namespace
 {
+Executor single;
+
 constexpr Time kStart = 1'700'000'000'000'000'000;
 constexpr Duration kSweep = 100'000'000, kImuStep = 5'000'000;
 
@@ -89,7 +91,7 @@ void octreeMapInsert(benchmark::State& state)
         state.PauseTiming();
         const auto points = worldPoints(recording().scans[k++ % recording().scans.size()]);
         state.ResumeTiming();
-        map.insert(points);
+        map.insert(points, single);
     }
     state.counters["nodes"] = static_cast<double>(map.size());
 }
@@ -101,7 +103,7 @@ void octreeMapMatch(benchmark::State& state)
 {
     OctreeMap map;
     Executor executor(1);
-    for (const Scan& scan : recording().scans) map.insert(worldPoints(scan));
+    for (const Scan& scan : recording().scans) map.insert(worldPoints(scan), single);
     const auto all = worldPoints(recording().scans[0]);
     std::vector<MapPoint> queries;
     for (std::size_t i = 0; i < all.size(); i += all.size() / 2000) queries.push_back(all[i]);
@@ -111,7 +113,7 @@ void octreeMapMatch(benchmark::State& state)
         if (state.range(0) != 0)
         {
             state.PauseTiming();
-            map.insert(queries);
+            map.insert(queries, single);
             state.ResumeTiming();
         }
         map.match(queries, found, executor);

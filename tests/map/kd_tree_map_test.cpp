@@ -11,6 +11,8 @@ using namespace taut::test;
 
 namespace
 {
+Executor single;
+
 Correspondence matchOne(const KdTreeMap& map, const Vector3d& position, FeatureKind kind)
 {
     Executor executor;
@@ -26,7 +28,7 @@ TEST(KdTreeMap, MatchesAnEdgeWithItsLine)
     line.radius = 3;
     Random random(1);
     KdTreeMap map;
-    for (int scan = 0; scan < 5; scan++) map.insert(line.linePoints(random, 100));
+    for (int scan = 0; scan < 5; scan++) map.insert(line.linePoints(random, 100), single);
     for (int i = 0; i < 50; i++)
     {
         const Vector3d query = line.center + random.uniform(-2, 2) * line.u + random.vector(0.1);
@@ -48,7 +50,7 @@ TEST(KdTreeMap, MakesNoLineOfACross)
         points.push_back({{0.21 * i, 0, 0}, FeatureKind::Edge});
         points.push_back({{0, 0.21 * i, 0}, FeatureKind::Edge});
     }
-    map.insert(points);
+    map.insert(points, single);
     EXPECT_EQ(matchOne(map, {0, 0, 0}, FeatureKind::Edge).surface, Surface::None);
 }
 
@@ -57,7 +59,7 @@ TEST(KdTreeMap, MakesNoPlaneOfPointsInOneRow)
     Random random(1);
     KdTreeMap map;
     for (int i = 0; i < 800; i++)
-        map.insert({{Vector3d(0.05 * i, 0, 0) + random.vector(0.01), FeatureKind::Plane}});
+        map.insert({{Vector3d(0.05 * i, 0, 0) + random.vector(0.01), FeatureKind::Plane}}, single);
     for (int i = 2; i < 38; i++)
         EXPECT_EQ(matchOne(map, Vector3d(i, 0, 0), FeatureKind::Plane).surface, Surface::None);
 }
@@ -71,7 +73,7 @@ TEST(KdTreeMap, ThinksLittleOfPlanesThroughScatteredPoints)
         points.push_back(
             {{random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)},
              FeatureKind::Any});
-    map.insert(points);
+    map.insert(points, single);
     int trusted = 0;
     for (int i = 0; i < 200; i++)
     {
@@ -90,7 +92,7 @@ TEST(KdTreeMap, KnowsLessAboutAPlaneBesideItsPoints)
     for (int i = 0; i < 40; i++)
     {
         KdTreeMap map;
-        map.insert(patch.planePoints(random, 300, FeatureKind::Plane));
+        map.insert(patch.planePoints(random, 300, FeatureKind::Plane), single);
         const auto in = matchOne(map, patch.center, FeatureKind::Plane);
         const auto out = matchOne(map, patch.center + 1.4 * patch.u, FeatureKind::Plane);
         ASSERT_EQ(in.surface, Surface::Plane);

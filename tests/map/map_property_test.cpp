@@ -14,6 +14,8 @@ using namespace taut::test;
 
 namespace
 {
+Executor single;
+
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 class AnyMap : public ::testing::TestWithParam<const char*>
@@ -38,7 +40,8 @@ class AnyMap : public ::testing::TestWithParam<const char*>
     static void see(Map& seen_by, const Patch& patch, FeatureKind kind = FeatureKind::Plane)
     {
         Random random(3);
-        for (int scan = 0; scan < 10; scan++) seen_by.insert(patch.planePoints(random, 1000, kind));
+        for (int scan = 0; scan < 10; scan++)
+            seen_by.insert(patch.planePoints(random, 1000, kind), single);
     }
 
     static std::vector<MapPoint> queriesOn(const Patch& patch, FeatureKind kind, int count = 300)
@@ -138,7 +141,7 @@ TEST_P(AnyMap, MatchesPlanarQueriesWithPlanesAndEdgesWithLines)
     const Patch patch = tiltedPatch({2, -1, 0.5});
     see(*map, patch);
     Random random(4);
-    for (int scan = 0; scan < 10; scan++) map->insert(patch.linePoints(random, 100));
+    for (int scan = 0; scan < 10; scan++) map->insert(patch.linePoints(random, 100), single);
     for (const Correspondence& c : match(*map, queriesOn(patch, FeatureKind::Plane)))
         EXPECT_NE(c.surface, Surface::Line);
     for (const Correspondence& c : match(*map, queriesOn(patch, FeatureKind::Edge)))
@@ -232,7 +235,7 @@ TEST_P(AnyMap, ClearsAndLearnsAgain)
 TEST_P(AnyMap, IgnoresPointsThatAreNotFinite)
 {
     const Patch patch = tiltedPatch({2, -1, 0.5});
-    map->insert({{{kNaN, 0, 0}, FeatureKind::Plane}, {{0, 1 / 0.0, 0}, FeatureKind::Edge}});
+    map->insert({{{kNaN, 0, 0}, FeatureKind::Plane}, {{0, 1 / 0.0, 0}, FeatureKind::Edge}}, single);
     EXPECT_TRUE(map->empty());
     see(*map, patch);
     EXPECT_EQ(

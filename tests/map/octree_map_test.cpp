@@ -9,6 +9,8 @@ using namespace taut::test;
 
 namespace
 {
+Executor single;
+
 Correspondence matchOne(const OctreeMap& map, const Vector3d& query, FeatureKind kind)
 {
     Executor executor(1);
@@ -20,7 +22,8 @@ Correspondence matchOne(const OctreeMap& map, const Vector3d& query, FeatureKind
 void see(OctreeMap& map, const Patch& patch, int scans = 10, unsigned seed = 1)
 {
     Random random(seed);
-    for (int i = 0; i < scans; i++) map.insert(patch.planePoints(random, 2000, FeatureKind::Any));
+    for (int i = 0; i < scans; i++)
+        map.insert(patch.planePoints(random, 2000, FeatureKind::Any), single);
 }
 
 Patch floorAt(double height, double noise)
@@ -116,7 +119,7 @@ TEST(OctreeMap, AScatteredCloudIsNoSurface)
         cloud.push_back(
             {{random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)},
              FeatureKind::Any});
-    map.insert(cloud);
+    map.insert(cloud, single);
     int planes = 0;
     for (int i = 0; i < 200; i++)
         planes += matchOne(map, random.vector(1), FeatureKind::Any).surface != Surface::None;
@@ -131,7 +134,7 @@ TEST(OctreeMap, MatchesAWireAsALineIfAskedTo)
         OctreeMap map;
         map.config.lines = lines;
         Random random(6);
-        for (int i = 0; i < 10; i++) map.insert(wire.linePoints(random, 200));
+        for (int i = 0; i < 10; i++) map.insert(wire.linePoints(random, 200), single);
         int found = 0;
         for (int i = 0; i < 50; i++)
         {
@@ -155,7 +158,8 @@ TEST(OctreeMap, LearnsASurfaceThatIsSeenMoreOften)
     OctreeMap map;
     const Patch patch = floorAt(1, 0.01);
     Random random(7);
-    map.insert(patch.planePoints(random, 5, FeatureKind::Any));  // fewer than any window needs
+    map.insert(
+        patch.planePoints(random, 5, FeatureKind::Any), single);  // fewer than any window needs
     const auto known = [&]
     {
         int planes = 0;

@@ -18,12 +18,17 @@ struct FilledTree
     StatisticsTree tree{kLeaf};
     unsigned from_depth = 12;
 
-    bool add(const Eigen::Vector3d& p, double capacity = 1e9)
+    void add(const Eigen::Vector3d& p, double capacity = 1e9) { add({p}, capacity, 1); }
+
+    void add(const std::vector<Eigen::Vector3d>& points, double capacity, int threads)
     {
-        PointStatistics statistics;
-        statistics.add(p);
-        StatisticsTree::Cursor cursor(tree);
-        return tree.add(cursor, keyOf(p), statistics, from_depth, capacity);
+        StatisticsTree::Entries entries;
+        for (std::uint32_t i = 0; i < points.size(); i++)
+            entries.push_back({StatisticsTree::wayTo(keyOf(points[i])), i});
+        Executor executor(threads);
+        tree.add(
+            entries, from_depth, capacity,
+            [&](std::uint32_t i, PointStatistics& sum) { sum.add(points[i]); }, executor);
     }
 
     octomap::OcTreeKey keyOf(const Eigen::Vector3d& p) const
@@ -33,7 +38,7 @@ struct FilledTree
 
     const StatisticsNode* find(const Eigen::Vector3d& p, unsigned depth) const
     {
-        return StatisticsTree::Cursor(tree).find(keyOf(p), depth);
+        return tree.find(keyOf(p), depth);
     }
 };
 }  // namespace
@@ -84,7 +89,7 @@ TEST(StatisticsTree, InnerNodesAreTheSumOfTheirLeaves)
         // Within one node of depth 12: 16 leaves, 1.6 m.
         const Eigen::Vector3d p(
             random.uniform(0.01, 1.59), random.uniform(0.01, 1.59), random.uniform(0.01, 1.59));
-        EXPECT_TRUE(filled.add(p));
+        filled.add(p);
         all.add(p);
     }
     const StatisticsNode* node = filled.find({0.5, 0.5, 0.5}, 12);
@@ -96,38 +101,58 @@ TEST(StatisticsTree, InnerNodesAreTheSumOfTheirLeaves)
     EXPECT_EQ(filled.find({0.5, 0.5, 0.5}, 11)->statistics().count, 0);  // above from_depth
 }
 
-TEST(StatisticsTree, ACursorFindsWhatAFreshLookUpFinds)
+TEST(StatisticsTree, ManyPointsAtOnceAreTheSameAsOneAfterTheOther)
+{
+    FilledTree one_by_one, at_once, in_parallel;
+    Random random(4);
+    for (int scan = 0; scan < 3; scan++)
+    {
+        std::vector<Eigen::Vector3d> points;
+        for (int i = 0; i < 3000; i++) points.push_back(random.vector(2));
+        for (const Eigen::Vector3d& p : points) one_by_one.add(p);
+        at_once.add(points, 1e9, 1);
+        in_parallel.add(points, 1e9, 3);
+    }
+    EXPECT_EQ(at_once.tree.size(), one_by_one.tree.size());
+    EXPECT_EQ(at_once.tree.size(), at_once.tree.calcNumNodes());
+    EXPECT_EQ(in_parallel.tree.size(), at_once.tree.size());
+    for (auto it = one_by_one.tree.begin_tree(), end = one_by_one.tree.end_tree(); it != end; ++it)
+    {
+        const StatisticsNode* same = at_once.tree.find(it.getKey(), it.getDepth());
+        ASSERT_TRUE(same);
+        ASSERT_TRUE(in_parallel.tree.find(it.getKey(), it.getDepth()));
+        EXPECT_EQ(
+            in_parallel.tree.find(it.getKey(), it.getDepth())->statistics(), same->statistics());
+        EXPECT_EQ(same->statistics().count, it->statistics().count);
+        EXPECT_LT((same->statistics().moments - it->statistics().moments).norm(), 1e-9);
+    }
+}
+
+TEST(StatisticsTree, ASearchGoesOnWhereTheLastOneEnded)
 {
     FilledTree filled;
-    Random random(4);
-    std::vector<Eigen::Vector3d> points;
-    for (int i = 0; i < 300; i++)
-    {
-        points.push_back(random.vector(3));
-        filled.add(points.back());
-    }
-    StatisticsTree::Cursor cursor(filled.tree);
-    for (int i = 0; i < 3000; i++)
-    {
-        const auto at = static_cast<std::size_t>(random.uniform(0, 299.9));
-        const Eigen::Vector3d p = points[at] + random.vector(i % 2 == 0 ? 0.0 : 0.2);
-        const auto depth = static_cast<unsigned>(random.uniform(12, 16.99));
-        const StatisticsNode* expected = filled.tree.search(filled.keyOf(p), depth);
-        EXPECT_EQ(cursor.find(filled.keyOf(p), depth), expected);
-    }
-    const StatisticsTree empty(kLeaf);
-    EXPECT_EQ(StatisticsTree::Cursor(empty).find(filled.keyOf({0, 0, 0}), 12), nullptr);
+    const Eigen::Vector3d p(0.55, 0.55, 0.55);
+    StatisticsTree::Place place;
+    const auto find = [&] { return filled.tree.find(filled.keyOf(p), kDepth, place); };
+    EXPECT_EQ(find(), nullptr);  // the tree is empty
+    filled.add(p + Eigen::Vector3d(-0.4, 0, 0));
+    EXPECT_EQ(find(), nullptr);
+    EXPECT_GE(place.depth, 12u);  // the way to a neighbour is there
+    filled.add(p);
+    ASSERT_TRUE(find());
+    EXPECT_EQ(find(), filled.find(p, kDepth));
+    EXPECT_EQ(find()->statistics().count, 1);
 }
 
 TEST(StatisticsTree, AFullLeafStaysAsItIs)
 {
     FilledTree filled;
     const Eigen::Vector3d p(0.55, 0.55, 0.55);
-    for (int i = 0; i < 3; i++) EXPECT_TRUE(filled.add(p, 3));
-    EXPECT_FALSE(filled.add(p, 3));
+    for (int i = 0; i < 4; i++) filled.add(p, 3);
     EXPECT_EQ(filled.find(p, kDepth)->statistics().count, 3);
     EXPECT_EQ(filled.find(p, 12)->statistics().count, 3);
-    EXPECT_TRUE(filled.add(p + Eigen::Vector3d(0.1, 0, 0), 3));  // its neighbour is not full
+    filled.add(p + Eigen::Vector3d(0.1, 0, 0), 3);  // its neighbour is not full
+    EXPECT_EQ(filled.find(p, 12)->statistics().count, 4);
 }
 
 TEST(StatisticsTree, RemovingANodeRemovesAllBelowIt)
@@ -159,7 +184,7 @@ TEST(StatisticsTree, IsEmptyAfterTheLastNodeIsRemoved)
     filled.add(p);
     filled.tree.remove(filled.keyOf(p), 12);
     EXPECT_EQ(filled.tree.size(), 0u);
-    EXPECT_TRUE(filled.add(p));
+    filled.add(p);
     EXPECT_EQ(filled.tree.size(), filled.tree.calcNumNodes());
 }
 

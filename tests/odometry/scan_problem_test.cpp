@@ -18,6 +18,8 @@ using namespace taut::test;
 
 namespace
 {
+Executor single;
+
 constexpr int kN = NavState::kSize;
 
 /** A map of a room, seen from its true poses, and a scan in motion that is to be matched with it
@@ -35,7 +37,7 @@ struct Scene3d
     {
         const Time begin = recording.start + fromSeconds(2.6);
         OctreeMap map;
-        for (int i = 1; i <= 3; i++) map.insert(seen(begin - i * recording.scan_period));
+        for (int i = 1; i <= 3; i++) map.insert(seen(begin - i * recording.scan_period), single);
 
         Random random(5);
         prior.state = recording.truth(begin);

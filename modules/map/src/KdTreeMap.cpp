@@ -43,7 +43,7 @@ void KdTreeMap::clear()
     has_center_ = false;
 }
 
-void KdTreeMap::insert(const std::vector<MapPoint>& points)
+void KdTreeMap::insert(const std::vector<MapPoint>& points, Executor& /*executor*/)
 {
     std::vector<Vector3d> edges, planes;
     for (const MapPoint& point : points)

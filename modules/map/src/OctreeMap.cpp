@@ -12,9 +12,10 @@ namespace taut
 namespace
 {
 constexpr unsigned kTreeDepth = 16;
-constexpr std::uint32_t kMaxPatience = 7;  // insertions
-constexpr double kBlockSize = 8.0;         // [m] about: unit of forgetting
-constexpr int kRecenterKeys = 16384;       // leaves from the origin: half of what keys can name
+constexpr std::uint32_t kMaxPatience = 15;  // insertions
+constexpr double kGrowth = 1.2;             // of a window's points, that it is computed anew
+constexpr double kBlockSize = 8.0;          // [m] about: unit of forgetting
+constexpr int kRecenterKeys = 16384;        // leaves from the origin: half of what keys can name
 
 std::uint64_t pack(std::uint16_t x, std::uint16_t y, std::uint16_t z)
 {
@@ -43,7 +44,7 @@ OctreeMap::OctreeMap(const OctreeMap& other)
     : Map(other),
       config(other.config),
       tree_(std::make_unique<StatisticsTree>(*other.tree_)),
-      levels_(other.levels_),
+      levels_(other.levels_.size()),  // without the cache, which names the other's nodes
       insertions_(other.insertions_),
       blocks_(other.blocks_),
       last_center_(other.last_center_),
@@ -96,42 +97,32 @@ unsigned OctreeMap::blockDepth() const
     return kTreeDepth - static_cast<unsigned>(std::clamp(up, config.scales - 1, 15));
 }
 
-void OctreeMap::insert(const std::vector<MapPoint>& points)
+void OctreeMap::insert(const std::vector<MapPoint>& points, Executor& executor)
 {
-    // Points of one leaf are summed first: one descent of the tree for each leaf touched.
-    WindowIndex index;
-    index.reserve(points.size());
-    Leaves leaves;
-    for (const MapPoint& p : points)
+    StatisticsTree::Entries entries;
+    entries.reserve(points.size());
+    for (std::uint32_t i = 0; i < points.size(); i++)
     {
         octomap::OcTreeKey key;
-        if (!p.position.allFinite() ||
-            !tree_->coordToKeyChecked(toOctomap(p.position - origin_), key))
+        if (!points[i].position.allFinite() ||
+            !tree_->coordToKeyChecked(toOctomap(points[i].position - origin_), key))
             continue;
-        const std::uint64_t packed = pack(key[0], key[1], key[2]);
-        const auto [it, added] =
-            index.try_emplace(packed, static_cast<std::uint32_t>(leaves.size()));
-        if (added) leaves.push_back({packed, {}});
-        leaves[it->second].second.add(p.position);
+        entries.push_back({StatisticsTree::wayTo(key), i});
+        remember(key);
     }
-    insertLeaves(leaves, config.leaf_capacity);
+    tree_->add(
+        std::move(entries), depthOf(config.scales - 1), config.leaf_capacity,
+        [&](std::uint32_t i, PointStatistics& sum) { sum.add(points[i].position); }, executor);
     insertions_++;
 }
 
-void OctreeMap::insertLeaves(const Leaves& leaves, double capacity)
+void OctreeMap::remember(const octomap::OcTreeKey& leaf)
 {
-    const unsigned from_depth = depthOf(config.scales - 1);
-    const unsigned block_shift = kTreeDepth - blockDepth();
-    StatisticsTree::Cursor cursor(*tree_);
-    for (const auto& [packed, statistics] : leaves)
-    {
-        const octomap::OcTreeKey key = unpack(packed);
-        if (!tree_->add(cursor, key, statistics, from_depth, capacity)) continue;
-        blocks_.insert(pack(
-            static_cast<std::uint16_t>(key[0] >> block_shift << block_shift),
-            static_cast<std::uint16_t>(key[1] >> block_shift << block_shift),
-            static_cast<std::uint16_t>(key[2] >> block_shift << block_shift)));
-    }
+    const unsigned shift = kTreeDepth - blockDepth();
+    blocks_.insert(pack(
+        static_cast<std::uint16_t>(leaf[0] >> shift << shift),
+        static_cast<std::uint16_t>(leaf[1] >> shift << shift),
+        static_cast<std::uint16_t>(leaf[2] >> shift << shift)));
 }
 
 void OctreeMap::slide(const Vector3d& center_world)
@@ -169,6 +160,7 @@ void OctreeMap::slide(const Vector3d& center_world)
             }
             else
             {
+                level.windows[it->second].places = {};  // some nodes may be gone
                 ++it;
             }
         }
@@ -178,7 +170,8 @@ void OctreeMap::slide(const Vector3d& center_world)
 
 void OctreeMap::recenter(const Vector3d& center_world)
 {
-    Leaves leaves;
+    StatisticsTree::Entries entries;
+    std::vector<PointStatistics> leaves;
     const double edge = config.leaf_size * (1 << (kTreeDepth - blockDepth()));
     std::array<int, 3> shift{};  // of the keys, by whole blocks: every node keeps its content
     for (int i = 0; i < 3; i++)
@@ -188,21 +181,25 @@ void OctreeMap::recenter(const Vector3d& center_world)
             static_cast<int>(blocks * (1 << (kTreeDepth - blockDepth())));
         origin_[i] += blocks * edge;
     }
+    blocks_.clear();
     const auto end = tree_->end_leafs();
     for (auto it = tree_->begin_leafs(); it != end; ++it)
     {
-        const octomap::OcTreeKey key = it.getKey();
-        leaves.push_back(
-            {pack(
-                 static_cast<std::uint16_t>(key[0] - shift[0]),
-                 static_cast<std::uint16_t>(key[1] - shift[1]),
-                 static_cast<std::uint16_t>(key[2] - shift[2])),
-             it->statistics()});
+        const octomap::OcTreeKey old = it.getKey();
+        const octomap::OcTreeKey key(
+            static_cast<std::uint16_t>(old[0] - shift[0]),
+            static_cast<std::uint16_t>(old[1] - shift[1]),
+            static_cast<std::uint16_t>(old[2] - shift[2]));
+        entries.push_back({StatisticsTree::wayTo(key), static_cast<std::uint32_t>(leaves.size())});
+        leaves.push_back(it->statistics());
+        remember(key);
     }
     tree_ = std::make_unique<StatisticsTree>(config.leaf_size);
     levels_.assign(levels_.size(), {});
-    blocks_.clear();
-    insertLeaves(leaves, std::numeric_limits<double>::infinity());
+    Executor single;
+    tree_->add(
+        std::move(entries), depthOf(config.scales - 1), std::numeric_limits<double>::infinity(),
+        [&](std::uint32_t i, PointStatistics& sum) { sum.add(leaves[i]); }, single);
 }
 
 bool OctreeMap::cornerOf(const Vector3d& p, int level, std::array<std::uint16_t, 3>& corner) const
@@ -244,31 +241,45 @@ bool OctreeMap::isStale(const Window& window) const
     return window.checked == 0 || insertions_ - window.checked > window.patience;
 }
 
-void OctreeMap::refresh(Window& window, int level, StatisticsTree::Cursor& cursor) const
+void OctreeMap::refresh(Window& window, int level) const
 {
     const unsigned depth = depthOf(level);
     const auto step = static_cast<std::uint16_t>(1u << level);
-    PointStatistics sum;
-    for (int i = 0; i < 8; i++)
+    std::array<const StatisticsNode*, 8> nodes;
+    double count = 0;
+    for (unsigned i = 0; i < 8; i++)
     {
         const octomap::OcTreeKey key(
             static_cast<std::uint16_t>(window.corner[0] - (i & 1 ? step : 0)),
             static_cast<std::uint16_t>(window.corner[1] - (i & 2 ? step : 0)),
             static_cast<std::uint16_t>(window.corner[2] - (i & 4 ? step : 0)));
-        if (const StatisticsNode* node = cursor.find(key, depth)) sum.add(node->statistics());
+        nodes[i] = tree_->find(key, depth, window.places[i]);
+        if (nodes[i] != nullptr) count += nodes[i]->statistics().count;
     }
-    if (sum.count < config.min_points) return;
-    // Few new points change a surface little: it is kept until a tenth more have come, and one that
-    // has seen none or few for a while is looked at less often.
-    if (sum.count < 1.1 * window.count)
+    if (count >= config.min_points && count >= kGrowth * window.count)
     {
-        window.patience = std::min(2 * window.patience + 1, kMaxPatience);
-        return;
+        PointStatistics sum;
+        for (const StatisticsNode* node : nodes)
+            if (node != nullptr) sum.add(node->statistics());
+        const double min_width = config.min_spread * config.leaf_size * (1 << level);
+        window.min_width2 = min_width * min_width;
+        compute(window, sum);
     }
+    schedule(window, count);
+}
+
+void OctreeMap::schedule(Window& window, double count) const
+{
+    // Few new points change a surface little: it is kept until a tenth more have come, and not
+    // looked at before they are expected.
+    const double arrived = count - window.seen;
+    const double missing = std::max<double>(config.min_points, kGrowth * window.count) - count;
+    window.seen = count;
     window.patience = 0;
-    const double min_width = config.min_spread * config.leaf_size * (1 << level);
-    window.min_width2 = min_width * min_width;
-    compute(window, sum);
+    if (window.age == 0) return;
+    window.patience = missing * window.age < kMaxPatience * arrived
+                          ? static_cast<std::uint32_t>(missing * window.age / arrived)
+                          : kMaxPatience;
 }
 
 void OctreeMap::compute(Window& window, const PointStatistics& statistics) const
@@ -354,8 +365,10 @@ void OctreeMap::findWindows(const std::vector<MapPoint>& queries, int l, Executo
         if (last.window == kNoWindow || last.corner != corner)
             last = {corner, windowAt(level, corner)};
         searches_[i].window = last.window;
+        searches_[i].last_level = static_cast<std::int8_t>(l);
         Window& window = level.windows[last.window];
         if (!isStale(window)) continue;
+        window.age = window.checked == 0 ? 0 : insertions_ - window.checked;
         window.checked = insertions_;
         stale.push_back(last.window);
     }
@@ -363,12 +376,11 @@ void OctreeMap::findWindows(const std::vector<MapPoint>& queries, int l, Executo
         stale.size(), 64,
         [&](std::size_t, std::size_t begin, std::size_t end)
         {
-            StatisticsTree::Cursor cursor(*tree_);
-            for (std::size_t i = begin; i < end; i++) refresh(level.windows[stale[i]], l, cursor);
+            for (std::size_t i = begin; i < end; i++) refresh(level.windows[stale[i]], l);
         });
 }
 
-void OctreeMap::advance(Search& search, FeatureKind kind, int l) const
+void OctreeMap::advance(Search& search, int l) const
 {
     const auto& windows = levels_[static_cast<std::size_t>(l)].windows;
     const Window& w = windows[search.window];
@@ -383,6 +395,7 @@ void OctreeMap::advance(Search& search, FeatureKind kind, int l) const
         search.active = false;  // smaller windows hold still fewer
         return;
     }
+    const FeatureKind kind = search.kind;
     const bool plane = kind != FeatureKind::Edge && isPlane(w);
     if (search.best_level < 0 || search.line)
     {
@@ -401,24 +414,45 @@ void OctreeMap::advance(Search& search, FeatureKind kind, int l) const
         search.active = false;
 }
 
+bool OctreeMap::isSettled(const MapPoint& query, std::size_t i) const
+{
+    const Search& search = searches_[i];
+    if (search.kind != query.kind || !query.position.allFinite()) return false;
+    for (int l = config.scales - 1; l >= search.last_level; l--)
+    {
+        std::array<std::uint16_t, 3> corner;
+        if (!cornerOf(query.position, l, corner) ||
+            corner != lookups_[i * levels_.size() + static_cast<std::size_t>(l)].corner)
+            return false;
+    }
+    return search.last_level < config.scales;
+}
+
 void OctreeMap::match(
     const std::vector<MapPoint>& queries, std::vector<Correspondence>& correspondences,
     Executor& executor) const
 {
-    correspondences.assign(queries.size(), {});
-    searches_.assign(queries.size(), {});
     const std::size_t lookups = queries.size() * levels_.size();
     if (lookups_insertion_ != insertions_ || lookups_.size() != lookups)
     {
         lookups_.assign(lookups, {});
+        searches_.assign(queries.size(), {});
         lookups_insertion_ = insertions_;
+    }
+    for (std::size_t i = 0; i < queries.size(); i++)
+    {
+        if (isSettled(queries[i], i)) continue;
+        searches_[i] = {};
+        searches_[i].kind = queries[i].kind;
     }
     for (int level = config.scales - 1; level >= 0; level--)
     {
         findWindows(queries, level, executor);
-        for (std::size_t i = 0; i < queries.size(); i++)
-            if (searches_[i].active) advance(searches_[i], queries[i].kind, level);
+        for (Search& search : searches_)
+            if (search.active) advance(search, level);
     }
+    for (Search& search : searches_) search.active = false;
+    correspondences.assign(queries.size(), {});
     for (std::size_t i = 0; i < queries.size(); i++)
     {
         const Search& s = searches_[i];

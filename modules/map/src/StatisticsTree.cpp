@@ -60,61 +60,92 @@ std::size_t StatisticsNode::subtreeSize() const
     return size;
 }
 
+namespace
+{
+/** Two zero bits before each bit. */
+std::uint64_t spread(std::uint64_t bits)
+{
+    bits = (bits | bits << 32) & 0x001f00000000ffff;
+    bits = (bits | bits << 16) & 0x001f0000ff0000ff;
+    bits = (bits | bits << 8) & 0x100f00f00f00f00f;
+    bits = (bits | bits << 4) & 0x10c30c30c30c30c3;
+    return (bits | bits << 2) & 0x1249249249249249;
+}
+}  // namespace
+
+std::uint64_t StatisticsTree::wayTo(const octomap::OcTreeKey& key)
+{
+    return spread(key[0]) | spread(key[1]) << 1 | spread(key[2]) << 2;
+}
+
+StatisticsNode& StatisticsNode::makeChild(unsigned i, bool& is_new)
+{
+    if (children == nullptr) allocChildren();
+    is_new = children[i] == nullptr;
+    if (is_new) children[i] = new StatisticsNode();
+    return *static_cast<StatisticsNode*>(children[i]);
+}
+
 void StatisticsTree::remove(const octomap::OcTreeKey& key, unsigned depth)
 {
-    const StatisticsNode* node = Cursor(*this).find(key, depth);
+    const StatisticsNode* node = find(key, depth);
     if (node == nullptr) return;
     tree_size -= node->subtreeSize() - 1;  // octomap counts the node and its ancestors only
     deleteNode(key, depth);
     if (!nodeHasChildren(root)) clear();
 }
 
-unsigned StatisticsTree::Cursor::sharedDepth(const octomap::OcTreeKey& key) const
+const StatisticsNode* StatisticsTree::find(
+    const octomap::OcTreeKey& key, unsigned depth, Place& place) const
 {
-    const unsigned differing = static_cast<unsigned>(key[0] ^ key_[0]) |
-                               static_cast<unsigned>(key[1] ^ key_[1]) |
-                               static_cast<unsigned>(key[2] ^ key_[2]);
-    const int used_bits = differing == 0 ? 0 : 32 - __builtin_clz(differing);
-    return tree_.tree_depth - static_cast<unsigned>(used_bits);
-}
-
-const StatisticsNode* StatisticsTree::Cursor::find(const octomap::OcTreeKey& key, unsigned depth)
-{
-    if (tree_.root == nullptr) return nullptr;
-    way_[0] = tree_.root;
-    depth_ = std::min(depth_, sharedDepth(key));
-    key_ = key;
-    while (depth_ < depth)
+    if (place.node == nullptr) place = {root, 0};
+    if (root == nullptr) return nullptr;
+    for (; place.depth < depth; place.depth++)
     {
         const unsigned child =
-            octomap::computeChildIdx(key, static_cast<int>(tree_.tree_depth - depth_ - 1));
-        if (!tree_.nodeChildExists(way_[depth_], child)) return nullptr;
-        way_[depth_ + 1] = tree_.getNodeChild(way_[depth_], child);
-        depth_++;
+            octomap::computeChildIdx(key, static_cast<int>(tree_depth - place.depth - 1));
+        if (!nodeChildExists(place.node, child)) return nullptr;
+        place.node = getNodeChild(place.node, child);
     }
-    return way_[depth];
+    return place.node;
 }
 
-bool StatisticsTree::add(
-    Cursor& cursor, const octomap::OcTreeKey& key, const PointStatistics& statistics,
-    unsigned from_depth, double capacity)
+const StatisticsNode* StatisticsTree::find(const octomap::OcTreeKey& key, unsigned depth) const
+{
+    Place place;
+    return find(key, depth, place);
+}
+
+const StatisticsTree::Entry* StatisticsTree::childEnd(
+    const Entry* begin, const Entry* end, unsigned depth) const
+{
+    const unsigned child = childOf(*begin, depth);
+    return std::find_if(begin, end, [&](const Entry& e) { return childOf(e, depth) != child; });
+}
+
+std::vector<StatisticsTree::Subtree> StatisticsTree::subtreesOf(
+    const Entries& entries, unsigned depth)
 {
     if (root == nullptr)
     {
         root = new StatisticsNode();
         tree_size++;
     }
-    const StatisticsNode* leaf = cursor.find(key, tree_depth);
-    if (leaf != nullptr && leaf->statistics().count >= capacity) return false;
-    for (; cursor.depth_ < tree_depth; cursor.depth_++)
+    std::vector<Subtree> level{{root, entries.data(), entries.data() + entries.size()}};
+    for (unsigned d = 0; d < depth; d++)
     {
-        const unsigned child =
-            octomap::computeChildIdx(key, static_cast<int>(tree_depth - cursor.depth_ - 1));
-        cursor.way_[cursor.depth_ + 1] = createNodeChild(cursor.way_[cursor.depth_], child);
+        std::vector<Subtree> next;
+        for (const Subtree& s : level)
+            for (const Entry* e = s.begin; e != s.end;)
+            {
+                const Entry* end = childEnd(e, s.end, d);
+                bool is_new = false;
+                next.push_back({&s.node->makeChild(childOf(*e, d), is_new), e, end});
+                tree_size += is_new;
+                e = end;
+            }
+        level = std::move(next);
     }
-    for (unsigned d = from_depth; d <= tree_depth; d++)
-        cursor.way_[d]->statistics().add(statistics);
-    size_changed = true;
-    return true;
+    return level;
 }
 }  // namespace taut

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "taut/factors/SampledPath.h"
+
 namespace taut
 {
 namespace
@@ -188,25 +190,23 @@ std::vector<Eigen::Vector3f> Odometry::undistorted(
 
 void Odometry::insert(const Scan& scan, const SweepPath& path, ScanResult& result)
 {
+    config_.map->slide(previous_.state.T_world_imu.p);
     const std::size_t n = scan.points.size();
+    if (n == 0) return;
     const auto most = static_cast<std::size_t>(config_.insert.max_points);
     const std::size_t stride = n > most ? (n + most - 1) / most : 1;
     const std::size_t kept = (n + stride - 1) / stride;
+    const auto [first, last] = std::minmax_element(
+        scan.points.begin(), scan.points.end(),
+        [](const LidarPoint& a, const LidarPoint& b) { return a.offset < b.offset; });
+    const SampledPath poses(path, scan.timeOf(*first), scan.timeOf(*last));
     std::vector<MapPoint> points(kept);
-    executor_.forChunks(
-        kept, 1024,
-        [&](std::size_t, std::size_t begin, std::size_t end)
-        {
-            std::size_t hint = 0;
-            for (std::size_t i = begin; i < end; i++)
-            {
-                const LidarPoint& p = scan.points[i * stride];
-                points[i].position =
-                    path.poseAt(scan.timeOf(p), hint) * Vector3d(p.position.cast<double>());
-            }
-        });
-    config_.map->insert(points);
-    config_.map->slide(previous_.state.T_world_imu.p);
+    for (std::size_t i = 0; i < kept; i++)
+    {
+        const LidarPoint& p = scan.points[i * stride];
+        points[i].position = poses.poseAt(scan.timeOf(p)) * Vector3d(p.position.cast<double>());
+    }
+    config_.map->insert(points, executor_);
     result.points.resize(kept);
     for (std::size_t i = 0; i < kept; i++) result.points[i] = points[i].position;
 }

@@ -32,8 +32,8 @@ class Map : public mrpt::rtti::CObject
         const std::vector<MapPoint>& queries, std::vector<Correspondence>& correspondences,
         Executor& executor) const = 0;
 
-    /** Adds undistorted points. */
-    virtual void insert(const std::vector<MapPoint>& points) = 0;
+    /** Adds undistorted points: the same map with any number of threads. */
+    virtual void insert(const std::vector<MapPoint>& points, Executor& executor) = 0;
 
     /** Forgets what lies outside the window around the body: keeps the memory bounded. */
     virtual void slide(const Vector3d& center_world) = 0;

@@ -48,7 +48,7 @@ class OctreeMap : public Map
     void match(
         const std::vector<MapPoint>& queries, std::vector<Correspondence>& correspondences,
         Executor& executor) const override;
-    void insert(const std::vector<MapPoint>& points) override;
+    void insert(const std::vector<MapPoint>& points, Executor& executor) override;
     void slide(const Vector3d& center_world) override;
     bool empty() const override { return !tree_ || tree_->size() == 0; }
     std::size_t size() const override { return tree_ ? tree_->size() : 0; }
@@ -62,12 +62,15 @@ class OctreeMap : public Map
     {
         std::uint32_t checked = 0;   //!< insertion after which it was last compared with the tree
         std::uint32_t patience = 0;  //!< insertions to wait before it is compared again
-        double count = 0;            //!< points when it was computed; 0: not known yet
+        std::uint32_t age = 0;  //!< insertions between the last two comparisons; 0: there was one
+        double seen = 0;        //!< points at the last comparison
+        double count = 0;       //!< points when it was computed; 0: not known yet
         Vector3d mean = Vector3d::Zero(), normal = Vector3d::UnitZ(), axis = Vector3d::UnitX();
         double thickness2 = 0;           //!< unbiased variance along the normal [m^2]
         double width2 = 0, length2 = 0;  //!< variances along the other two axes [m^2]
         double min_width2 = 0;           //!< [m^2] of this size of window
         std::array<std::uint16_t, 3> corner{};
+        std::array<StatisticsTree::Place, 8> places;  //!< of its nodes
     };
     /** Mixes all bits of a packed key into the low ones, which alone choose the bucket. */
     struct KeyHash
@@ -91,7 +94,9 @@ class OctreeMap : public Map
     {
         std::uint32_t best = kNoWindow, window = kNoWindow;
         std::int8_t best_level = -1;
+        std::int8_t last_level = 127;  //!< the last one it looked at
         bool active = true, line = false;
+        FeatureKind kind = FeatureKind::Any;
     };
     /** Where a query of the last match() looked: iterations seldom leave a window. */
     struct Lookup
@@ -101,17 +106,17 @@ class OctreeMap : public Map
     };
     static constexpr std::uint32_t kNoWindow = 0xffffffff;
 
-    using Leaves = std::vector<std::pair<std::uint64_t, PointStatistics>>;  // by packed key
-
-    void insertLeaves(const Leaves& leaves, double capacity);
     void recenter(const Vector3d& center_world);
     bool cornerOf(const Vector3d& p, int level, std::array<std::uint16_t, 3>& corner) const;
     std::uint32_t windowAt(Level& level, const std::array<std::uint16_t, 3>& corner) const;
-    void refresh(Window& window, int level, StatisticsTree::Cursor& cursor) const;
+    void remember(const octomap::OcTreeKey& leaf);
     bool isStale(const Window& window) const;
+    void refresh(Window& window, int level) const;
+    void schedule(Window& window, double count) const;
     void compute(Window& window, const PointStatistics& statistics) const;
     void findWindows(const std::vector<MapPoint>& queries, int level, Executor& executor) const;
-    void advance(Search& search, FeatureKind kind, int level) const;
+    bool isSettled(const MapPoint& query, std::size_t i) const;
+    void advance(Search& search, int level) const;
     Correspondence planeAt(const Vector3d& query, const Window& window) const;
     Correspondence lineAt(const Vector3d& query, const Window& window) const;
     double variance(const Window& window) const;
@@ -122,6 +127,7 @@ class OctreeMap : public Map
 
     std::unique_ptr<StatisticsTree> tree_;
     mutable std::vector<Level> levels_;  // a cache: its content follows from the tree
+    // The last match(): good for the next one until the map changes.
     mutable std::vector<Search> searches_;
     mutable std::vector<Lookup> lookups_;  // a query and level each
     mutable std::uint32_t lookups_insertion_ = 0;

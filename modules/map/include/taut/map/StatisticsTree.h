@@ -4,7 +4,11 @@
 #include <octomap/OcTreeDataNode.h>
 
 #include <Eigen/Core>
-#include <array>
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "taut/core/Parallel.h"
 
 namespace taut
 {
@@ -42,6 +46,9 @@ class StatisticsNode : public octomap::OcTreeDataNode<PointStatistics>
     /** Number of nodes from this one down. */
     std::size_t subtreeSize() const;
 
+    /** The child, made if it is not there. The tree must be told of new nodes. */
+    StatisticsNode& makeChild(unsigned i, bool& is_new);
+
     PointStatistics& statistics() { return value; }
     const PointStatistics& statistics() const { return value; }
 
@@ -59,32 +66,110 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
     bool isNodeCollapsible(const StatisticsNode*) const override { return false; }
     bool pruneNode(StatisticsNode*) override { return false; }
 
-    /** The way from the root to the node looked up last. Near keys share most of their way: the
-     * next look-up starts where both part. Valid until the tree is changed by others. */
-    class Cursor
+    /** How far the way to a node exists: where the next search for it goes on. Valid until nodes
+     * are removed from the tree. */
+    struct Place
     {
-     public:
-        explicit Cursor(const StatisticsTree& tree) : tree_(tree) {}
-        /** The node of a key at a depth, or null. */
-        const StatisticsNode* find(const octomap::OcTreeKey& key, unsigned depth);
-
-     private:
-        friend class StatisticsTree;
-        unsigned sharedDepth(const octomap::OcTreeKey& key) const;
-
-        const StatisticsTree& tree_;
-        std::array<StatisticsNode*, 17> way_{};
-        octomap::OcTreeKey key_;
-        unsigned depth_ = 0;  // of the last node of the way that exists
+        const StatisticsNode* node =
+            nullptr;         //!< the deepest that exists; null: not looked for yet
+        unsigned depth = 0;  //!< of that node
     };
+
+    /** The node of a key at a depth, or null. `place` belongs to this key and depth. */
+    const StatisticsNode* find(const octomap::OcTreeKey& key, unsigned depth, Place& place) const;
+    const StatisticsNode* find(const octomap::OcTreeKey& key, unsigned depth) const;
 
     /** Deletes the node of a key at a depth with all below it, and ancestors that become empty. */
     void remove(const octomap::OcTreeKey& key, unsigned depth);
 
-    /** Adds statistics to the leaf of a key and to its ancestors from the given depth down, unless
-     * the leaf holds `capacity` points already. False if it does. */
-    bool add(
-        Cursor& cursor, const octomap::OcTreeKey& key, const PointStatistics& statistics,
-        unsigned from_depth, double capacity);
+    /** Something to be added to a leaf. */
+    struct Entry
+    {
+        std::uint64_t way = 0;    //!< wayTo() the leaf
+        std::uint32_t index = 0;  //!< of what is to be added
+    };
+    using Entries = std::vector<Entry>;
+
+    /** The children from the root to a leaf, three bits each (Morton code): leaves in this order
+     * are neighbours in the tree. */
+    static std::uint64_t wayTo(const octomap::OcTreeKey& key);
+
+    /** Adds to leaves, and to their ancestors from the given depth down, what `put(index,
+     * statistics)` adds for each entry; a leaf that holds `capacity` points already stays as it is.
+     * Every node is visited once, in the order of the entries' ways: the sums do not depend on
+     * threads. */
+    template <class Put>
+    void add(
+        Entries entries, unsigned from_depth, double capacity, const Put& put, Executor& executor);
+
+ private:
+    /** A subtree whose nodes have statistics, and the entries that belong to it. */
+    struct Subtree
+    {
+        StatisticsNode* node;
+        const Entry *begin, *end;
+        std::size_t created = 0;  //!< nodes
+    };
+    std::vector<Subtree> subtreesOf(const Entries& entries, unsigned depth);
+    template <class Put>
+    PointStatistics fill(
+        StatisticsNode& node, unsigned depth, const Entry* begin, const Entry* end, double capacity,
+        const Put& put, std::size_t& created);
+    const Entry* childEnd(const Entry* begin, const Entry* end, unsigned depth) const;
+    unsigned childOf(const Entry& entry, unsigned depth) const
+    {
+        return static_cast<unsigned>(entry.way >> 3 * (tree_depth - depth - 1) & 7);
+    }
 };
+
+template <class Put>
+void StatisticsTree::add(
+    Entries entries, unsigned from_depth, double capacity, const Put& put, Executor& executor)
+{
+    if (entries.empty()) return;
+    std::sort(
+        entries.begin(), entries.end(),
+        [](const Entry& a, const Entry& b)
+        { return a.way != b.way ? a.way < b.way : a.index < b.index; });
+    std::vector<Subtree> subtrees = subtreesOf(entries, from_depth);
+    executor.forChunks(
+        subtrees.size(), 8,
+        [&](std::size_t, std::size_t begin, std::size_t end)
+        {
+            for (std::size_t i = begin; i < end; i++)
+            {
+                Subtree& s = subtrees[i];
+                fill(*s.node, from_depth, s.begin, s.end, capacity, put, s.created);
+            }
+        });
+    for (const Subtree& s : subtrees) tree_size += s.created;
+    size_changed = true;
+}
+
+template <class Put>
+PointStatistics StatisticsTree::fill(
+    StatisticsNode& node, unsigned depth, const Entry* begin, const Entry* end, double capacity,
+    const Put& put, std::size_t& created)
+{
+    PointStatistics added;
+    if (depth == tree_depth)
+    {
+        if (node.statistics().count < capacity)
+            for (const Entry* e = begin; e != end; ++e) put(e->index, added);
+    }
+    else
+    {
+        while (begin != end)
+        {
+            const Entry* next = childEnd(begin, end, depth);
+            bool is_new = false;
+            StatisticsNode& child = node.makeChild(childOf(*begin, depth), is_new);
+            created += is_new;
+            added.add(fill(child, depth + 1, begin, next, capacity, put, created));
+            begin = next;
+        }
+    }
+    node.statistics().add(added);
+    return added;
+}
 }  // namespace taut
