@@ -4,6 +4,7 @@
 
 #include "bag_writers.h"
 #include "scenes.h"
+#include "sqlite3_bag_writer.h"
 #include "taut/core/WarningLog.h"
 #include "taut/importing/openImportSource.h"
 #include "temporary_folder.h"

@@ -2,7 +2,6 @@
 
 #include <bzlib.h>
 #include <lz4frame.h>
-#include <sqlite3.h>
 #include <zlib.h>
 #include <zstd.h>
 
@@ -15,7 +14,7 @@
 #include "bag_messages.h"
 
 /** \file bag_writers.h
- * The containers of ROS bags, as small as a reader needs them. */
+ * A bag of ROS 1 and an MCAP file, as small as a reader needs them. */
 namespace taut::test
 {
 struct TestMessage
@@ -276,48 +275,4 @@ class McapWriter
         record(to, 0x07, Blob(14, 0));  // an index that nobody reads
     }
 };
-
-/** A sqlite3 database as rosbag2 writes it. */
-inline void writeSqlite3Bag(
-    const std::string& path, const TestMessages& messages, const ContainerStyle& style = {})
-{
-    sqlite3* db = nullptr;
-    sqlite3_open(path.c_str(), &db);
-    const auto run = [&](const std::string& sql)
-    {
-        if (sqlite3_exec(db, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
-            throw std::logic_error(sqlite3_errmsg(db));
-    };
-    run("PRAGMA synchronous=OFF;CREATE TABLE topics(id INTEGER PRIMARY KEY,name TEXT NOT NULL,type "
-        "TEXT NOT NULL,"
-        "serialization_format TEXT NOT NULL,offered_qos_profiles TEXT NOT NULL);"
-        "CREATE TABLE messages(id INTEGER PRIMARY KEY,topic_id INTEGER NOT NULL,"
-        "timestamp INTEGER NOT NULL, data BLOB NOT NULL);"
-        "CREATE INDEX timestamp_idx ON messages (timestamp ASC);BEGIN");
-    const auto ids = numberTopics(messages);
-    std::map<std::string, bool> introduced;
-    for (const TestMessage& m : messages)
-    {
-        if (!introduced[m.topic])
-        {
-            std::string type = m.type;
-            type.replace(type.find('/'), 1, "/msg/");
-            run("INSERT INTO topics VALUES(" + std::to_string(ids.at(m.topic) + 1) + ",'" +
-                m.topic + "','" + type + "','cdr','')");
-            introduced[m.topic] = true;
-        }
-        const Blob data = compress(style.compression, m.data);
-        sqlite3_stmt* insert = nullptr;
-        sqlite3_prepare_v2(
-            db, "INSERT INTO messages(topic_id,timestamp,data) VALUES(?,?,?)", -1, &insert,
-            nullptr);
-        sqlite3_bind_int(insert, 1, ids.at(m.topic) + 1);
-        sqlite3_bind_int64(insert, 2, m.received);
-        sqlite3_bind_blob(insert, 3, data.data(), static_cast<int>(data.size()), SQLITE_STATIC);
-        sqlite3_step(insert);
-        sqlite3_finalize(insert);
-    }
-    run("COMMIT");
-    sqlite3_close(db);
-}
 }  // namespace taut::test

@@ -15,9 +15,11 @@ class TemporaryFolder
     TemporaryFolder()
     {
         const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-        path_ =
-            std::filesystem::temp_directory_path() / ("taut_" + std::to_string(::getpid()) + "_" +
-                                                      test->test_suite_name() + "_" + test->name());
+        std::string name = "taut_" + std::to_string(::getpid()) + "_" + test->test_suite_name() +
+                           "_" + test->name();
+        for (char& c : name)
+            if (c == '/') c = '_';  // of a test with parameters
+        path_ = std::filesystem::temp_directory_path() / name;
         std::filesystem::create_directories(path_);
     }
     ~TemporaryFolder()

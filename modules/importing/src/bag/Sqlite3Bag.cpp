@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
+#include <map>
+#include <set>
 
 #include "BagFile.h"
 #include "BagReader.h"
@@ -13,6 +16,8 @@ namespace taut::bag
 {
 namespace
 {
+constexpr std::int64_t kBeforeAll = std::numeric_limits<std::int64_t>::min();
+
 class Sqlite3Bag : public BagReader
 {
  public:
@@ -30,59 +35,42 @@ class Sqlite3Bag : public BagReader
         // So that a database that lost its end can be read as far as it goes; nothing is written.
         sqlite3_exec(raw, "PRAGMA writable_schema=ON", nullptr, nullptr, nullptr);
         checkLength(size);
-        first_id_ = now_id_ = idAt("MIN");
+        first_id_ = idAt("MIN");
         last_id_ = idAt("MAX");
     }
 
     std::vector<BagTopic> topics() override
     {
+        const std::set<std::int64_t> in_use = topicsInUse();
         std::vector<BagTopic> topics;
-        const auto rows =
-            prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
-        while (step(rows))
+        for (const auto& [id, topic] : readTopics())
         {
-            const bool cdr = textAt(rows, 3) == "cdr";
-            topics.push_back(
-                {textAt(rows, 1), cdr ? plainType(textAt(rows, 2)) : "", Wire::Cdr,
-                 isEmpty(sqlite3_column_int64(rows.get(), 0))});
+            topics.push_back(topic);
+            topics.back().empty = in_use.count(id) == 0;
         }
         return topics;
     }
 
     void choose(const std::vector<std::string>& topics) override
     {
-        std::string names;
-        for (const auto& topic : topics)
-        {
-            const std::unique_ptr<char, decltype(&sqlite3_free)> quoted(
-                sqlite3_mprintf("%Q", topic.c_str()), &sqlite3_free);
-            names += (names.empty() ? "" : ",") + std::string(quoted.get());
-        }
-        where_ = " AND topics.name IN (" + names + ")";
+        for (const auto& [id, topic] : readTopics())
+            if (std::find(topics.begin(), topics.end(), topic.name) != topics.end())
+                chosen_[id] = topic.name;
+        rows_ = prepare("SELECT id, topic_id, timestamp FROM messages ORDER BY id");
+        data_ = prepare("SELECT data FROM messages WHERE id = ?");
     }
 
     std::optional<BagMessage> next() override
     {
-        if (at_end_) return {};
         try
         {
-            // CROSS JOIN keeps the order: messages as they came, each with its topic.
-            if (!rows_)
-                rows_ = prepare(
-                    "SELECT messages.id, messages.timestamp, messages.data, topics.name "
-                    "FROM messages CROSS JOIN topics WHERE topics.id = messages.topic_id" +
-                    where_ + " ORDER BY messages.id");
-            if (step(rows_))
+            while (!at_end_ && step(rows_, now_id_))
             {
-                now_id_ = sqlite3_column_int64(rows_.get(), 0);
-                const auto* data =
-                    static_cast<const std::uint8_t*>(sqlite3_column_blob(rows_.get(), 2));
-                const auto size = static_cast<std::size_t>(sqlite3_column_bytes(rows_.get(), 2));
+                const auto topic = chosen_.find(sqlite3_column_int64(rows_.get(), 1));
+                if (topic == chosen_.end()) continue;
                 return BagMessage{
-                    textAt(rows_, 3),
-                    Wire::Cdr,
-                    sqlite3_column_int64(rows_.get(), 1),
-                    {data, data ? size : 0}};
+                    topic->second, Wire::Cdr, sqlite3_column_int64(rows_.get(), 2),
+                    dataOf(now_id_)};
             }
         }
         catch (const std::runtime_error& e)
@@ -97,9 +85,8 @@ class Sqlite3Bag : public BagReader
 
     double progress() const override
     {
-        return last_id_ > first_id_ ? static_cast<double>(now_id_ - first_id_) /
-                                          static_cast<double>(last_id_ - first_id_)
-                                    : 0;
+        if (last_id_ <= first_id_ || now_id_ < first_id_) return 0;
+        return static_cast<double>(now_id_ - first_id_) / static_cast<double>(last_id_ - first_id_);
     }
 
  private:
@@ -132,12 +119,41 @@ class Sqlite3Bag : public BagReader
         const auto row = prepare("SELECT " + which + "(id) FROM messages");
         return sqlite3_step(row.get()) == SQLITE_ROW ? sqlite3_column_int64(row.get(), 0) : 0;
     }
-    /** True if the topic surely has no message. */
-    bool isEmpty(std::int64_t topic)
+    std::map<std::int64_t, BagTopic> readTopics()
     {
-        const auto row = prepare(
-            "SELECT 1 FROM messages WHERE topic_id = " + std::to_string(topic) + " LIMIT 1");
-        return sqlite3_step(row.get()) == SQLITE_DONE;
+        std::map<std::int64_t, BagTopic> topics;
+        const auto rows =
+            prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
+        for (std::int64_t id = kBeforeAll; step(rows, id);)
+        {
+            const bool cdr = textAt(rows, 3) == "cdr";
+            topics[id] = {textAt(rows, 1), cdr ? plainType(textAt(rows, 2)) : "", Wire::Cdr, false};
+        }
+        return topics;
+    }
+    /** Those with messages, as far as the messages can be read. */
+    std::set<std::int64_t> topicsInUse()
+    {
+        std::set<std::int64_t> topics;
+        const auto rows = prepare("SELECT id, topic_id FROM messages ORDER BY id");
+        try
+        {
+            for (std::int64_t id = kBeforeAll; step(rows, id);)
+                topics.insert(sqlite3_column_int64(rows.get(), 1));
+        }
+        catch (const std::runtime_error&)
+        {
+        }
+        return topics;
+    }
+    /** Valid until the next message is read. */
+    Bytes dataOf(std::int64_t id)
+    {
+        sqlite3_reset(data_.get());
+        sqlite3_bind_int64(data_.get(), 1, id);
+        if (sqlite3_step(data_.get()) != SQLITE_ROW) fail();
+        const auto* data = static_cast<const std::uint8_t*>(sqlite3_column_blob(data_.get(), 0));
+        return {data, data ? static_cast<std::size_t>(sqlite3_column_bytes(data_.get(), 0)) : 0};
     }
 
     Statement prepare(const std::string& sql)
@@ -146,12 +162,16 @@ class Sqlite3Bag : public BagReader
         if (sqlite3_prepare_v2(db_.get(), sql.c_str(), -1, &raw, nullptr) != SQLITE_OK) fail();
         return Statement(raw);
     }
-    bool step(const Statement& statement)
+    /** The next row; its first column is `id`, which must grow: a damaged tree has circles. */
+    bool step(const Statement& statement, std::int64_t& id)
     {
         const int result = sqlite3_step(statement.get());
-        if (result == SQLITE_ROW) return true;
-        if (result != SQLITE_DONE) fail();
-        return false;
+        if (result == SQLITE_DONE) return false;
+        if (result != SQLITE_ROW) fail();
+        const std::int64_t last = id;
+        id = sqlite3_column_int64(statement.get(), 0);
+        if (id <= last) throw std::runtime_error(path_ + " is damaged: its rows are not in order");
+        return true;
     }
     static std::string textAt(const Statement& row, int column)
     {
@@ -168,11 +188,12 @@ class Sqlite3Bag : public BagReader
         if (warn_) warn_({0, kind, text});
     }
 
-    std::string path_, where_;
+    std::string path_;
     WarningSink warn_;
     std::unique_ptr<sqlite3, Close> db_;
-    Statement rows_;  // after the database, to go before it
-    std::int64_t first_id_ = 0, last_id_ = 0, now_id_ = 0;
+    Statement rows_, data_;  // after the database, to go before it
+    std::map<std::int64_t, std::string> chosen_;
+    std::int64_t first_id_ = 0, last_id_ = 0, now_id_ = kBeforeAll;
     bool at_end_ = false;
 };
 }  // namespace
