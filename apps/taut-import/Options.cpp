@@ -4,6 +4,17 @@
 
 namespace taut
 {
+namespace
+{
+ScanStamp scanStamp(const std::string& text)
+{
+    if (text.empty()) return ScanStamp::Detect;
+    if (text == "start") return ScanStamp::Start;
+    if (text == "end") return ScanStamp::End;
+    throw UsageError("--scan-stamp is start or end, not '" + text + "'");
+}
+}  // namespace
+
 bool parseOptions(int argc, char** argv, Options& o)
 {
     TCLAP::CmdLine cmd(
@@ -32,6 +43,16 @@ bool parseOptions(int argc, char** argv, Options& o)
     TCLAP::SwitchArg capture(
         "", "capture-clock",
         "Stamps by the computer that captured the packets, instead of the sensor's clock", cmd);
+    TCLAP::ValueArg<std::string> lidar_topic(
+        "", "lidar-topic", "Bags: topic of the LiDAR (default: the only one)", false, "", "REGEX",
+        cmd);
+    TCLAP::ValueArg<std::string> imu_topic(
+        "", "imu-topic", "Bags: topic of the IMU (default: the only one)", false, "", "REGEX", cmd);
+    TCLAP::ValueArg<std::string> scan_stamp(
+        "", "scan-stamp",
+        "Bags: which end of a sweep the stamp of its cloud is, start or end (default: as the times "
+        "of the points tell)",
+        false, "", "start|end", cmd);
     TCLAP::SwitchArg overwrite("w", "overwrite", "Replace a rawlog that is there", cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "Errors and warnings only", cmd);
     if (!parseCommandLine(cmd, argc, argv)) return false;
@@ -43,6 +64,9 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.imu_label = imu.getValue();
     o.import.ouster_json = ouster.getValue();
     o.import.capture_clock = capture.getValue();
+    o.import.lidar_topic = lidar_topic.getValue();
+    o.import.imu_topic = imu_topic.getValue();
+    o.import.scan_stamp = scanStamp(scan_stamp.getValue());
     o.overwrite = overwrite.getValue();
     o.quiet = quiet.getValue();
     return true;

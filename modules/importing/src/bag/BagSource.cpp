@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 namespace
 {
 constexpr std::size_t kSweepsToJudge = 10;
+constexpr std::size_t kMostAhead = 20'000;           // messages; the LiDAR may have stopped early
 constexpr Time kLatest = 4'600'000'000'000'000'000;  // ns: beyond what a stamp can be
 
 const std::string kImuType = "sensor_msgs/Imu";
@@ -52,19 +53,22 @@ class BagSource : public ImportSource
 
     std::optional<ImportedItem> next() override
     {
-        if (!learned_) readAhead();
         while (true)
         {
-            if (!ahead_.empty())
+            if ((learned_ || sweeps_read_ == 0) && !ahead_.empty())
             {
                 Pending pending = std::move(ahead_.front());
                 ahead_.pop_front();
                 if (auto item = finish(std::move(pending))) return item;
+                continue;
             }
-            else if (auto pending = read())
-                ahead_.push_back(std::move(*pending));
-            else
-                return checkedEnd();
+            auto pending = read();
+            if (!pending && learned_) return checkedEnd();
+            const bool at_end = !pending;
+            if (pending) take(std::move(*pending));
+            if (!learned_ &&
+                (at_end || sweeps_read_ == kSweepsToJudge || ahead_.size() == kMostAhead))
+                learn();
         }
     }
 
@@ -81,18 +85,19 @@ class BagSource : public ImportSource
     /** Decoded, but not yet with a known clock. */
     using Pending = std::variant<ImuSample, RawSweep>;
 
-    /** The first sweeps, enough to judge them. */
-    void readAhead()
+    void take(Pending pending)
     {
-        learned_ = true;
+        if (std::holds_alternative<RawSweep>(pending)) sweeps_read_++;
+        ahead_.push_back(std::move(pending));
+    }
+
+    /** Judges the clock by the sweeps that were read ahead. */
+    void learn()
+    {
         std::vector<const RawSweep*> sweeps;
-        while (sweeps.size() < kSweepsToJudge)
-        {
-            auto pending = read();
-            if (!pending) break;
-            ahead_.push_back(std::move(*pending));  // a deque leaves the others where they are
-            if (const auto* sweep = std::get_if<RawSweep>(&ahead_.back())) sweeps.push_back(sweep);
-        }
+        for (const Pending& pending : ahead_)
+            if (const auto* sweep = std::get_if<RawSweep>(&pending)) sweeps.push_back(sweep);
+        learned_ = true;
         if (sweeps.empty()) return;
         try
         {
@@ -144,58 +149,42 @@ class BagSource : public ImportSource
     {
         if (auto* sample = std::get_if<ImuSample>(&pending))
         {
-            if (!isLater(sample->t, last_reading_, "imu_time", imu_->name)) return {};
-            if (!sample->gyro.allFinite() || !sample->accel.allFinite())
-            {
-                report(sample->t, "imu_invalid", imu_->name, "a value is not finite");
-                return {};
-            }
+            if (!hasStamp(sample->t, imu_->name)) return {};
+            readings_++;
             return *sample;
         }
         auto& sweep = std::get<RawSweep>(pending);
         const Time header = sweep.header;
+        if (!hasStamp(header, lidar_.name)) return {};
+        if (sweep.points.empty())
+        {
+            report(header, "scan_empty", lidar_.name, "a cloud has no valid point");
+            return {};
+        }
         try
         {
-            if (header == 0)
-                report(0, "no_stamp", lidar_.name, "a cloud has no stamp and is left out");
-            else if (sweep.points.empty())
-                report(header, "scan_empty", lidar_.name, "a cloud has no valid point");
-            else
-            {
-                Scan scan = clock_.toScan(std::move(sweep));
-                if (isLater(scan.stamp, last_scan_, "scan_time", lidar_.name)) return scan;
-            }
+            Scan scan = clock_.toScan(std::move(sweep));
+            scans_++;
+            return scan;
         }
         catch (const std::runtime_error& e)
         {
             report(header, "message_invalid", lidar_.name, e.what());
+            return {};
         }
-        return {};
     }
 
-    /** Remembers the stamp if it is later than the one before. */
-    bool isLater(Time t, std::optional<Time>& last, const char* kind, const std::string& topic)
+    bool hasStamp(Time t, const std::string& topic) const
     {
-        if (t == 0)
-            report(0, "no_stamp", topic, "a message has no stamp and is left out");
-        else if (last && t <= *last)
-            report(
-                t, kind, topic,
-                "a stamp is " + std::to_string(toSeconds(*last - t)) +
-                    " s before the one before it; the message is left out");
-        else
-        {
-            last = t;
-            return true;
-        }
-        return false;
+        if (t == 0) report(0, "no_stamp", topic, "a message has no stamp and is left out");
+        return t != 0;
     }
 
     std::optional<ImportedItem> checkedEnd()
     {
-        if (!last_scan_)
+        if (scans_ == 0)
             throw std::runtime_error(path_ + ": no sweep of " + lidar_.name + " can be used");
-        if (!last_reading_ && !ended_)
+        if (readings_ == 0 && !ended_)
             report(
                 0, "no_imu", path_,
                 imu_ ? "no reading of the IMU on " + imu_->name
@@ -218,7 +207,7 @@ class BagSource : public ImportSource
     std::vector<std::string> judged_;
     std::deque<Pending> ahead_;
     bool learned_ = false, ended_ = false;
-    std::optional<Time> last_scan_, last_reading_;
+    std::size_t sweeps_read_ = 0, scans_ = 0, readings_ = 0;
 };
 }  // namespace
 

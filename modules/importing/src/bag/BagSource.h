@@ -10,17 +10,16 @@ bool isBag(const Recording& recording);
 /** Reads a ROS 1 bag (format 2.0) or a ROS 2 bag (MCAP, sqlite3; a file or the bag's folder):
  * sweeps from sensor_msgs/PointCloud2 and Livox CustomMsg, readings from sensor_msgs/Imu. Scans
  * have their points' own times and the stamp of the first of them, no label and no pose. Readings
- * are in m/s^2 and rad/s.
+ * are as the message has them.
  *
- * The first second is read ahead to judge what the numbers mean; what was judged is in findings().
+ * The first sweeps are read ahead to judge what times and stamps mean; see findings().
  * Warnings:
  *   bag_truncated      the file ends early; what is complete was read
  *   bag_unindexed      a ROS 1 bag that was not closed; the same
  *   bag_damaged        a part of the file contradicts itself and was left out
  *   bag_file_missing   a part of a split bag is not there
  *   message_invalid    a message that is not what its type says was left out
- *   no_stamp, imu_time, scan_time   a stamp of zero, or not later than the one before (left out)
- *   imu_invalid        values that are not finite (left out)
+ *   no_stamp           a message whose stamp is zero was left out
  *   no_imu             no reading in the whole bag
  *   scan_stamp         which end of a sweep its stamp means is contradicted or cannot be told
  *   scan_bad_points    more than 5 % of the points not finite or with an impossible time (left out)
