@@ -69,6 +69,14 @@ TEST(TheCommandLine, OverwritesOnlyWhenTold)
     EXPECT_NE(contentOf(out + "/trajectory.tum"), before);
 }
 
+TEST(TheCommandLine, SaysNothingWhenQuiet)
+{
+    const TemporaryFolder folder;
+    const ProgramRun run = slam(kSample, folder / "out", "-q --only-first-n 300");
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_EQ(run.output, "");
+}
+
 TEST(TheCommandLine, GivesOneAndTheNameOfAMissingFile)
 {
     const TemporaryFolder folder;

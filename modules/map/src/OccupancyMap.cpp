@@ -21,6 +21,13 @@ void writeFile(const std::string& path, const Write& write)
         throw std::runtime_error("cannot write the occupancy map to " + path);
 }
 
+/** What stands before the data of OctoMap's files: its own writers of it print on the terminal. */
+std::ostream& writeHeader(std::ostream& file, const char* kind, const octomap::OcTree& tree)
+{
+    return file << kind << "\nid " << tree.getTreeType() << "\nsize " << tree.size() << "\nres "
+                << tree.getResolution() << "\ndata\n";
+}
+
 /** Key of the cell twice as large that holds the cell of this key; the tree's origin stays. */
 octomap::OcTreeKey coarserKey(const octomap::OcTreeKey& key)
 {
@@ -106,11 +113,19 @@ void OccupancyMap::halveResolution()
 
 void OccupancyMap::writeOt(const std::string& path) const
 {
-    writeFile(path, [&](std::ostream& file) { return tree_->write(file); });
+    writeFile(
+        path,
+        [&](std::ostream& file) -> std::ostream&
+        { return tree_->writeData(writeHeader(file, "# Octomap OcTree file", *tree_)); });
 }
 
 void OccupancyMap::writeBt(const std::string& path) const
 {
-    writeFile(path, [&](std::ostream& file) { return tree_->writeBinaryConst(file); });
+    writeFile(
+        path,
+        [&](std::ostream& file) -> std::ostream& {
+            return tree_->writeBinaryData(
+                writeHeader(file, "# Octomap OcTree binary file", *tree_));
+        });
 }
 }  // namespace taut
