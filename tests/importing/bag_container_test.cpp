@@ -247,6 +247,12 @@ TEST_F(ABagFolder, IsReadInTheOrderOfItsMetadata)
     EXPECT_DOUBLE_EQ(result.progress, 1);
 }
 
+TEST_F(ABagFolder, WhoseMetadataNamesTheFolderTooIsReadAsWell)
+{
+    writeMetadata("[bag/log_8.db3, bag/log_9.db3, bag/log_10.db3]");
+    expectSame(import(folder_ / "bag").scans, scans_, 0);
+}
+
 TEST_F(ABagFolder, WithoutMetadataIsReadInTheOrderOfTheNumbers)
 {
     expectSame(import(folder_ / "bag").scans, scans_, 0);

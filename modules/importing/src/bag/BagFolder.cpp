@@ -23,7 +23,11 @@ std::vector<fs::path> partsOfMetadata(const fs::path& folder)
     {
         const auto yaml = mrpt::containers::yaml::FromFile((folder / "metadata.yaml").string());
         const auto list = yaml["rosbag2_bagfile_information"]["relative_file_paths"];
-        for (const auto& part : list.asSequence()) parts.push_back(folder / part.as<std::string>());
+        for (const auto& part : list.asSequence())
+        {
+            const fs::path path = part.as<std::string>();  // old recorders put the folder before it
+            parts.push_back(folder / (fs::exists(folder / path) ? path : path.filename()));
+        }
     }
     catch (const std::exception&)
     {

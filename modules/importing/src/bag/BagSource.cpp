@@ -25,7 +25,8 @@ constexpr Time kLatest = 4'600'000'000'000'000'000;  // ns: beyond what a stamp 
 const std::string kImuType = "sensor_msgs/Imu";
 const std::string kCloudType = "sensor_msgs/PointCloud2";
 const std::vector<std::string> kSweepTypes{
-    kCloudType, "livox_ros_driver/CustomMsg", "livox_ros_driver2/CustomMsg"};
+    kCloudType, "livox_ros_driver/CustomMsg", "livox_ros_driver2/CustomMsg",
+    "livox_interfaces/CustomMsg"};
 
 class BagSource : public ImportSource
 {

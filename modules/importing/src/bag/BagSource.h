@@ -22,7 +22,7 @@ bool isBag(const Recording& recording);
  *   no_stamp           a message whose stamp is zero was left out
  *   no_imu             no reading in the whole bag
  *   scan_stamp         which end of a sweep its stamp means is contradicted or cannot be told
- *   scan_bad_points    more than 5 % of the points not finite or with an impossible time (left out)
+ *   scan_bad_points    more than 5 % of the points with an impossible time (left out)
  *   scan_empty         a cloud without a valid point (left out)
  *
  * Throws std::runtime_error, naming file and cause, if the file cannot be read as a bag or its

@@ -36,7 +36,7 @@ struct LivoxPoint
     std::uint8_t reflectivity = 0, line = 0;
 };
 
-/** livox_ros_driver/CustomMsg and livox_ros_driver2/CustomMsg, which are the same. */
+/** CustomMsg of livox_ros_driver, livox_ros_driver2 and livox_interfaces, which are the same. */
 struct Livox
 {
     Time stamp = 0;

@@ -119,10 +119,10 @@ void checkLayout(const PointCloud2& cloud)
 /** Takes the point if it is one. */
 void add(RawSweep& sweep, const LidarPoint& point, std::optional<double> time)
 {
-    if (point.position.isZero(0)) return;  // no return
-    if (!point.position.allFinite() || (time && !std::isfinite(*time)))
+    if (point.position.isZero(0) || !point.position.allFinite()) return;  // no return
+    if (time && !std::isfinite(*time))
     {
-        sweep.not_finite++;
+        sweep.bad_times++;
         return;
     }
     sweep.points.push_back(point);

@@ -18,7 +18,7 @@ struct RawSweep
     std::string time_field;          //!< "t (uint32)"
     double nominal_unit = 1;         //!< what that field usually has [ns]; 0 if it varies
     int rings = 0;                   //!< as Scan::rings
-    std::size_t not_finite = 0;      //!< points left out
+    std::size_t bad_times = 0;       //!< points left out for a time that is not finite
 };
 
 /** Finds x, y, z, intensity (or reflectivity), ring (line, channel, laser_id) and time (t, time,

@@ -220,13 +220,13 @@ Scan SweepClock::toScan(RawSweep sweep) const
         throw std::runtime_error("its points have no times, unlike those before");
     else if (!sweep.points.empty())
         setTimes(scan, sweep);
-    const std::size_t kept = scan.points.size(),
-                      lost = sweep.not_finite + sweep.points.size() - kept;
-    if (timed_ && 20 * lost > kept + lost && warn_)
+    const std::size_t all = sweep.times.size() + sweep.bad_times;
+    const std::size_t lost = timed_ ? all - scan.points.size() : 0;
+    if (20 * lost > all && warn_)
         warn_(
             {scan.stamp, "scan_bad_points",
-             std::to_string(lost) + " of " + std::to_string(kept + lost) +
-                 " points are not finite or have an impossible time and are left out"});
+             std::to_string(lost) + " of " + std::to_string(all) +
+                 " points have an impossible time and are left out"});
     return scan;
 }
 
