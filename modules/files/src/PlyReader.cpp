@@ -1,12 +1,11 @@
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 
+#include "numbers.h"
 #include "taut/files/PlyFile.h"
 
 namespace taut
@@ -22,14 +21,6 @@ bool readLine(std::istream& in, std::string& line)
     if (!std::getline(in, line)) return false;
     if (!line.empty() && line.back() == '\r') line.pop_back();
     return true;
-}
-
-template <class T>
-double valueAt(const char* bytes)
-{
-    T value;
-    std::memcpy(&value, bytes, sizeof(T));
-    return static_cast<double>(value);
 }
 }  // namespace
 
@@ -146,16 +137,8 @@ void PlyReader::nextAscii(std::vector<double>& row)
 {
     if (!readLine(in_, line_))
         fail("ends after " + std::to_string(done_) + " of " + std::to_string(size_) + " vertices");
-    const char* p = line_.data();
-    const char* const end = p + line_.size();
-    for (double& value : row)
-    {
-        while (p != end && (*p == ' ' || *p == '\t')) ++p;
-        const auto result = std::from_chars(p, end, value);
-        if (result.ec != std::errc{})
-            fail("vertex " + std::to_string(done_) + " is not a row of numbers: '" + line_ + "'");
-        p = result.ptr;
-    }
+    if (!parseRow(line_, row))
+        fail("vertex " + std::to_string(done_) + " is not a row of numbers: '" + line_ + "'");
     if (done_ + 1 < size_ || more_elements_) return;
     while (readLine(in_, line_))
         if (line_.find_first_not_of(" \t") != std::string::npos) failTooLong();

@@ -3,8 +3,8 @@
 #include <mrpt/obs/CObservation.h>
 #include <mrpt/obs/obs_frwds.h>
 
-#include "ScanBuilder.h"
 #include "taut/rawlog/Rig.h"
+#include "taut/rawlog/ScanBuilder.h"
 
 namespace mrpt::obs
 {

@@ -1,4 +1,4 @@
-#include "ScanBuilder.h"
+#include "taut/rawlog/ScanBuilder.h"
 
 #include <algorithm>
 #include <utility>

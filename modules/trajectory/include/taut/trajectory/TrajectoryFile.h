@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "taut/core/TimeText.h"
 #include "taut/core/Warning.h"
 #include "taut/trajectory/Trajectory.h"
 
@@ -15,14 +16,6 @@
  * rotation, or going backward in time. */
 namespace taut
 {
-/** Nanoseconds of a decimal text in seconds ("1700000000.123456789", "1.7e+09"), by integer
- * arithmetic alone; digits past the ninth decimal are rounded, half away from zero. Throws
- * std::invalid_argument if the text is no such number or does not fit. */
-Time parseSeconds(const std::string& text);
-
-/** The exact opposite: seconds with 9 decimals. */
-std::string formatSeconds(Time t);
-
 /** One line of a TUM file, without its end: position to 1e-9 m, quaternion to 1e-12 with qw >= 0.
  */
 std::string tumLine(const StampedPose& pose);

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "taut/core/Warning.h"
+#include "taut/importing/ImportSource.h"
+
+namespace taut
+{
+/** A recording that keeps its sensors in files of their own. */
+struct SensorStreams
+{
+    std::function<std::optional<ImuSample>()> next_sample;  //!< empty: there is no IMU
+    std::function<std::optional<Scan>()> next_scan;
+    std::function<double()> progress;
+    std::vector<std::string> findings;
+};
+
+/** Brings the streams of two sensors into the order of time: a scan when it has ended, as a
+ * recorder would. Throws at the end if there was no scan; warns ("no_imu") if there is an IMU
+ * without samples. */
+class MergedSource : public ImportSource
+{
+ public:
+    MergedSource(std::string path, SensorStreams streams, WarningSink warn);
+
+    std::optional<ImportedItem> next() override;
+    double progress() const override { return streams_.progress(); }
+    std::vector<std::string> findings() const override;
+
+ private:
+    void checkEnd();
+
+    std::string path_;
+    SensorStreams streams_;
+    WarningSink warn_;
+    std::optional<ImuSample> sample_;
+    std::optional<Scan> scan_;
+    bool started_ = false, ended_ = false, any_sample_ = false;
+    std::size_t scans_ = 0, undistorted_ = 0;
+};
+}  // namespace taut

@@ -1,0 +1,133 @@
+#include "FolderSource.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "../MergedSource.h"
+#include "../filesIn.h"
+#include "CsvReader.h"
+#include "readCloud.h"
+#include "taut/core/TimeText.h"
+
+namespace taut
+{
+namespace fs = std::filesystem;
+
+namespace
+{
+constexpr const char* kImuFile = "imu.csv";
+
+std::vector<fs::path> cloudsOf(const fs::path& folder)
+{
+    const fs::path scans = folder / "scans";
+    auto files = filesIn(fs::is_directory(scans) ? scans : folder);
+    const auto other = [](const fs::path& file)
+    { return !isCloud(file) || file.filename() == kImuFile; };
+    files.erase(std::remove_if(files.begin(), files.end(), other), files.end());
+    if (std::all_of(files.begin(), files.end(), [](const auto& f) { return !!stampOfName(f); }))
+        std::stable_sort(
+            files.begin(), files.end(),
+            [](const auto& a, const auto& b) { return stampOfName(a) < stampOfName(b); });
+    return files;
+}
+
+/** The rows of imu.csv. */
+class ImuTable
+{
+ public:
+    ImuTable(const std::string& path, WarningSink warn) : csv_(path), warn_(std::move(warn))
+    {
+        const auto find = [this](const std::string& name)
+        {
+            const auto& all = csv_.columns();
+            const auto it = std::find(all.begin(), all.end(), name);
+            return it == all.end() ? -1 : static_cast<int>(it - all.begin());
+        };
+        t_ = find("t");
+        t_ns_ = find("t_ns");
+        if ((t_ < 0) == (t_ns_ < 0))
+            throw std::runtime_error("'" + path + "' needs one column of times: t or t_ns");
+        const std::array<std::string, 6> names{"gyro_x",  "gyro_y",  "gyro_z",
+                                               "accel_x", "accel_y", "accel_z"};
+        for (std::size_t i = 0; i < names.size(); i++)
+        {
+            values_[i] = find(names[i]);
+            if (values_[i] < 0)
+                throw std::runtime_error("'" + path + "' has no column " + names[i]);
+        }
+    }
+
+    std::optional<ImuSample> next()
+    {
+        while (true)
+        {
+            try
+            {
+                if (!csv_.next(row_)) return {};
+                return sample();
+            }
+            catch (const std::invalid_argument& e)
+            {
+                warn(csv_.where() + ": " + e.what());
+            }
+            catch (const std::runtime_error& e)
+            {
+                warn(e.what());
+            }
+        }
+    }
+
+ private:
+    ImuSample sample() const
+    {
+        ImuSample sample;
+        sample.t = parseSeconds(t_ >= 0 ? row_[t_] : row_[t_ns_] + "e-9");
+        for (int i = 0; i < 3; i++)
+        {
+            sample.gyro[i] = parseNumber(row_[values_[i]]);
+            sample.accel[i] = parseNumber(row_[values_[i + 3]]);
+        }
+        return sample;
+    }
+
+    void warn(const std::string& text) const
+    {
+        if (warn_) warn_({0, "imu_invalid", text + "; left out"});
+    }
+
+    CsvReader csv_;
+    WarningSink warn_;
+    int t_ = -1, t_ns_ = -1;
+    std::array<int, 6> values_{};
+    std::vector<std::string> row_;
+};
+}  // namespace
+
+bool isPlainFolder(const Recording& recording)
+{
+    return recording.is_folder && !cloudsOf(recording.path).empty();
+}
+
+std::unique_ptr<ImportSource> openPlainFolder(
+    const Recording& recording, const ImportOptions&, const WarningSink& warn)
+{
+    SensorStreams streams;
+    auto clouds = std::make_shared<FileQueue>(cloudsOf(recording.path));
+    streams.findings = {std::to_string(clouds->size()) + " clouds"};
+    streams.progress = [clouds] { return clouds->progress(); };
+    streams.next_scan = [clouds, warn]
+    { return clouds->nextScan([](const fs::path& file) { return readCloud(file); }, warn); };
+    const fs::path imu = recording.path / kImuFile;
+    if (fs::exists(imu))
+    {
+        auto table = std::make_shared<ImuTable>(imu.string(), warn);
+        streams.next_sample = [table] { return table->next(); };
+    }
+    else
+    {
+        streams.next_sample = [] { return std::optional<ImuSample>(); };  // that it lacks is told
+    }
+    return std::make_unique<MergedSource>(recording.path.string(), std::move(streams), warn);
+}
+}  // namespace taut
