@@ -79,7 +79,7 @@ TEST_F(PrefetchedLog, PassesErrorsOnWhereTheyHappen)
     save();
     const auto text = transcript<PrefetchedRawlog>(config_);
     EXPECT_EQ(text, transcript<RawlogSource>(config_));
-    EXPECT_NE(text.find("--lidar-label"), std::string::npos);
+    EXPECT_NE(text.find("--lidar"), std::string::npos);
     std::filesystem::remove(config_.path);
     EXPECT_THROW(PrefetchedRawlog{config_}, std::runtime_error);
 }

@@ -50,8 +50,8 @@ struct RawlogSource::Impl
         : config(c),
           sink(std::move(w)),
           reader(c.path),
-          lidar("LiDAR", "--lidar-label", firstGiven(c.lidar_label, c.rig.lidar.label)),
-          imu("IMU", "--imu-label", firstGiven(c.imu_label, c.rig.imu.label))
+          lidar("LiDAR", "--lidar", firstGiven(c.lidar_label, c.rig.lidar.label)),
+          imu("IMU", "--imu", firstGiven(c.imu_label, c.rig.imu.label))
     {
         lookAhead();
         if (config.from_time > 0) begin = progress.first + fromSeconds(config.from_time);
@@ -282,7 +282,7 @@ bool RawlogSource::Impl::checkImuTime(Time t)
     if (last_imu && t <= *last_imu)
     {
         skip(
-            t, "imu_time",
+            t, t == *last_imu ? "imu_duplicate" : "imu_time",
             t == *last_imu ? "two IMU samples have the same stamp"
                            : "the IMU's time goes backward by " + seconds(*last_imu - t));
         return false;
@@ -308,6 +308,9 @@ std::optional<Measurement> RawlogSource::Impl::convertLidar(const CObservation& 
     {
         ScanBuilder points = observationToPoints(observation, config.rig.lidar);
         Scan scan = points.finish();
+        progress.points += points.seen();
+        progress.points_not_finite += points.notFinite();
+        progress.points_bad_time += points.badTime();
         scan.stamp += clock_offset;
         scan.end += clock_offset;
         scan.sensor_label = observation.sensorLabel;
@@ -343,7 +346,7 @@ bool RawlogSource::Impl::checkScanTime(const Scan& scan)
         const Duration back = stamp_back ? *last_scan - scan.stamp : *last_scan_end - scan.end;
         const std::string what = stamp_back ? "stamp" : "end";
         skip(
-            scan.stamp, "scan_time",
+            scan.stamp, back == 0 ? "scan_duplicate" : "scan_time",
             back == 0
                 ? "two scans have the same " + what
                 : "the LiDAR's time (" + what + " of the scan) goes backward by " + seconds(back));

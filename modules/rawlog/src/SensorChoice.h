@@ -12,7 +12,7 @@ namespace taut
 class SensorChoice
 {
  public:
-    /** `kind` and `option` are for messages: "LiDAR", "--lidar-label". Throws std::runtime_error if
+    /** `kind` and `option` are for messages: "LiDAR", "--lidar". Throws std::runtime_error if
      * the expression is none. */
     SensorChoice(std::string kind, std::string option, const std::string& expression);
 

@@ -39,9 +39,12 @@ struct RawlogProgress
     std::uint64_t bytes_read = 0;  //!< of the file as it is on the disk: compressed if it is so
     std::uint64_t bytes_total = 0;
     std::size_t scans = 0, imu_samples = 0;  //!< given out
-    std::size_t skipped = 0;  //!< observations of the chosen sensors that could not be used
-    bool has_imu = false;     //!< an IMU was found, at the latest 2 s into the log
-    std::string lidar_label, imu_label;  //!< as chosen; empty before the first of them
+    std::size_t skipped = 0;   //!< observations of the chosen sensors that could not be used
+    std::uint64_t points = 0;  //!< in the scans of the chosen LiDAR, dropped ones too
+    std::uint64_t points_not_finite = 0;  //!< of these: a coordinate is NaN or infinite
+    std::uint64_t points_bad_time = 0;    //!< of these: 2 s or more away from their scan's stamp
+    bool has_imu = false;                 //!< an IMU was found, at the latest 2 s into the log
+    std::string lidar_label, imu_label;   //!< as chosen; empty before the first of them
     /** Observations by label and MRPT class, of all sensors, used or not. */
     std::map<std::pair<std::string, std::string>, std::size_t> sensors;
 
@@ -80,8 +83,10 @@ class MeasurementStream
  * Stamps of each sensor are strictly increasing in what is given out. What cannot be used is
  * skipped with a warning: rawlog_truncated   the file ends early or is damaged; see incomplete()
  *   no_stamp           observation without a valid stamp
- *   imu_time           stamp of the IMU equal to or earlier than the one before
- *   scan_time          the same for scans: neither stamp nor end may go backward
+ *   imu_time           stamp of the IMU earlier than the one before
+ *   imu_duplicate      stamp of the IMU equal to the one before
+ *   scan_time          stamp or end of a scan earlier than that of the one before
+ *   scan_duplicate     stamp or end of a scan equal to that of the one before
  *   imu_invalid        values that are missing or not finite
  *   imu_units          values that contradict m/s^2 and rad/s (used as they are)
  *   imu_late           the IMU appeared later than 2 s into the log
