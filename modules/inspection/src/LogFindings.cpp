@@ -1,0 +1,89 @@
+#include "LogFindings.h"
+
+#include "format.h"
+
+namespace taut
+{
+namespace
+{
+/** What to do about a kind of warning; empty for kinds that are found in a better way elsewhere. */
+std::string adviceFor(const std::string& kind)
+{
+    static const std::map<std::string, std::string> advice{
+        {"rawlog_truncated",
+         "copy the file again or record again; what is before the damage can be used"},
+        {"no_stamp", "let the driver stamp its observations"},
+        {"imu_time",
+         "a clock was set back while recording, or packets came in the wrong order: keep NTP from "
+         "stepping the clock; the samples are skipped"},
+        {"imu_duplicate",
+         "the driver gives readings twice or stamps them too coarsely; the second of each is "
+         "skipped"},
+        {"scan_time",
+         "a clock was set back while recording, or packets came in the wrong order: keep NTP from "
+         "stepping the clock; the scans are skipped"},
+        {"scan_duplicate",
+         "the driver gives scans twice or stamps them too coarsely; the second of each is skipped"},
+        {"imu_invalid", "let the driver give rates and specific forces in each sample"},
+        {"imu_units", "look at the units and set the scales in the rig file"},
+        {"imu_late", "start the IMU before the LiDAR, or cut the start off with --from-time"},
+        {"scan_overlap",
+         "the times of the points and the stamps come from different clocks: stamp by the "
+         "sensor's clock"},
+        {"scan_invalid", "see the text; the scans are skipped"},
+        {"scan_empty", "is the sensor covered, or still starting? the scans are skipped"},
+        {"rig_unused", "correct the label in the rig file"},
+        {"no_imu", "correct the label"}};
+    const auto it = advice.find(kind);
+    return it == advice.end() ? "" : it->second;
+}
+
+Finding pointFinding(
+    Time t, const std::string& kind, std::size_t bad, std::size_t seen, const std::string& what,
+    const std::string& advice)
+{
+    const double percent = 100 * static_cast<double>(bad) / static_cast<double>(seen);
+    return {
+        t,       kind,
+        percent, "%",
+        bad,     format("%zu of %zu points (%.2g %%) ", bad, seen, percent) + what + ": dropped",
+        advice};
+}
+}  // namespace
+
+void LogFindings::add(const Warning& warning)
+{
+    const std::string advice = adviceFor(warning.kind);
+    if (advice.empty()) return;
+    const auto [it, is_new] = by_kind_.try_emplace(warning.kind);
+    Finding& f = it->second;
+    if (is_new) f = {warning.t, warning.kind, 0, "", 0, warning.text, advice};
+    f.count++;
+    f.value = static_cast<double>(f.count);
+}
+
+void LogFindings::watch(const RawlogProgress& progress)
+{
+    if (first_nan_ == 0 && progress.points_not_finite > 0) first_nan_ = progress.now;
+    if (first_bad_time_ == 0 && progress.points_bad_time > 0) first_bad_time_ = progress.now;
+}
+
+Findings LogFindings::findings(const RawlogProgress& progress, bool own_units) const
+{
+    Findings found;
+    for (const auto& [kind, finding] : by_kind_)
+        if (kind != "imu_units" || !own_units) found.push_back(finding);
+    if (progress.points_not_finite > 0)
+        found.push_back(pointFinding(
+            first_nan_, "nan_points", progress.points_not_finite, progress.points,
+            "have coordinates that are not finite",
+            "harmless where the driver marks missing returns so; else look at the driver"));
+    if (progress.points_bad_time > 0)
+        found.push_back(pointFinding(
+            first_bad_time_, "point_times", progress.points_bad_time, progress.points,
+            "have a time 2 s or more away from their scan's",
+            "the times of the points and the stamps come from different clocks, or are in "
+            "different units"));
+    return found;
+}
+}  // namespace taut
