@@ -1,0 +1,111 @@
+/** taut-info: tells what a recording is like and what is wrong with it.
+ * Exit codes: 0 nothing found, 1 failed, 2 bad usage, 3 findings. */
+#include <iostream>
+#include <optional>
+#include <thread>
+
+#include "CommandLine.h"
+#include "Progress.h"
+#include "taut/inspection/InspectionReport.h"
+#include "taut/odometry/registerAll.h"
+
+namespace
+{
+struct Options
+{
+    taut::InspectionConfig inspection;
+    int threads = 1;
+    bool json = false, quiet = false;
+};
+
+/** Nothing if only help was asked for. */
+std::optional<Options> parse(int argc, char** argv)
+{
+    TCLAP::CmdLine cmd(
+        "taut-info: a doctor for recordings. Tells the sensors, rates, units, rest and noise of a "
+        "rawlog, and what is wrong with it: gaps, stamps, clipped or damaged values, clocks that "
+        "differ, an extrinsic rotation that does not fit. Each finding comes with its time, its "
+        "value and what to do (docs/inspecting.md). Exit codes: 0 nothing found, 1 failed, 2 bad "
+        "usage, 3 findings.",
+        ' ', TAUT_VERSION);
+    TCLAP::UnlabeledValueArg<std::string> input(
+        "LOG.rawlog", "Rawlog to look at (observations or sensory frames, gz or not)", true, "",
+        "LOG.rawlog", cmd);
+    TCLAP::ValueArg<std::string> rig(
+        "r", "rig", "Rig file: poses, noise and clocks of the sensors, over those in the log",
+        false, "", "RIG.yaml", cmd);
+    TCLAP::ValueArg<std::string> lidar(
+        "", "lidar", "Sensor label of the LiDAR, a regular expression (default: the only one)",
+        false, "", "REGEX", cmd);
+    TCLAP::ValueArg<std::string> imu(
+        "", "imu", "Sensor label of the IMU, a regular expression (default: the only one)", false,
+        "", "REGEX", cmd);
+    TCLAP::ValueArg<double> from(
+        "", "from-time", "Leave out what is earlier: seconds since the start of the log", false, 0,
+        "SECONDS", cmd);
+    TCLAP::ValueArg<double> to(
+        "", "to-time", "End there: seconds since the start of the log", false,
+        std::numeric_limits<double>::infinity(), "SECONDS", cmd);
+    TCLAP::ValueArg<double> window(
+        "", "window",
+        "Seconds, where the body turns most, whose scans are matched for clock offset and "
+        "extrinsic rotation (default 20)",
+        false, 20, "SECONDS", cmd);
+    TCLAP::SwitchArg no_matching(
+        "", "no-matching", "Do not match scans: quicker, without clock offset and extrinsic", cmd);
+    TCLAP::ValueArg<int> threads(
+        "", "threads", "Threads of the matching (0: all processors); the result is the same", false,
+        0, "N", cmd);
+    TCLAP::SwitchArg json("", "json", "Write JSON instead of text", cmd);
+    TCLAP::SwitchArg quiet("q", "quiet", "No progress", cmd);
+    if (!taut::parseCommandLine(cmd, argc, argv)) return {};
+
+    Options o;
+    taut::RawlogConfig& log = o.inspection.log;
+    log.path = input.getValue();
+    log.lidar_label = lidar.getValue();
+    log.imu_label = imu.getValue();
+    log.from_time = from.getValue();
+    log.to_time = to.getValue();
+    if (log.from_time < 0 || !(log.to_time > log.from_time))
+        throw taut::UsageError("--to-time must be later than --from-time, and neither negative");
+    if (!(window.getValue() >= 3 && window.getValue() <= 600))
+        throw taut::UsageError("--window must be 3 to 600 s");
+    if (threads.getValue() < 0 || threads.getValue() > 256)
+        throw taut::UsageError("--threads must be 0 to 256");
+    if (!rig.getValue().empty()) log.rig = taut::loadRig(rig.getValue());
+    o.inspection.window = window.getValue();
+    o.inspection.match_scans = !no_matching.getValue();
+    o.threads = threads.getValue() > 0 ? threads.getValue()
+                                       : static_cast<int>(std::thread::hardware_concurrency());
+    o.json = json.getValue();
+    o.quiet = quiet.getValue();
+    return o;
+}
+
+int run(const Options& options)
+{
+    taut::registerAll();
+    taut::Executor executor(options.threads);
+    taut::Progress progress(!options.quiet);
+    const taut::Inspection inspection = taut::inspectRecording(
+        options.inspection, executor,
+        [&](double share, std::size_t scans, double seconds)
+        { progress.update(share, static_cast<int>(scans), seconds); });
+    progress.clear();
+    std::cout
+        << (options.json ? taut::inspectionAsJson(inspection) : taut::inspectionAsText(inspection));
+    return inspection.findings.empty() ? 0 : 3;
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    return taut::runProgram(
+        "taut-info",
+        [&]
+        {
+            const auto options = parse(argc, argv);
+            return options ? run(*options) : 0;
+        });
+}
