@@ -12,9 +12,9 @@ using namespace taut::simulation::test;
 
 namespace
 {
-LidarConfig noiseFree()
+LidarConfig noiseFree(LidarType type = LidarType::Vlp16)
 {
-    LidarConfig config = lidarPreset(LidarType::Vlp16);
+    LidarConfig config = lidarPreset(type);
     config.range_noise = config.range_step = config.dropout = config.detection_range = 0;
     config.divergence = 0;
     config.T_imu_lidar = {expSO3(Vector3d(0.1, -0.2, 0.3)), Vector3d(0.1, 0.05, -0.15)};
@@ -43,6 +43,32 @@ TEST(Lidar, NoiseFreePointsLieOnSurfaces)
             EXPECT_LT((stored - s.surface[i]).norm(), 3e-6);
         }
     }
+}
+
+TEST(Lidar, BeamsOfAnOusterStartOffItsAxis)
+{
+    const Scene scene = smallScene();
+    const Motion motion = motionOf(MotionPreset::Violent, 6, 1);
+    Executor executor(1);
+    const LidarConfig config = noiseFree(LidarType::Os1_64);
+    const SimulatedScan s = Lidar(config, 1).sweep(40, motion, scene, executor);
+    for (std::size_t i = 0; i < s.scan.points.size(); i += 37)
+    {
+        const Pose T = motion.poseAt(toSeconds(s.scan.timeOf(s.scan.points[i])));
+        const Vector3d stored = T * config.T_imu_lidar * s.scan.points[i].position.cast<double>();
+        EXPECT_LT((stored - s.surface[i]).norm(), 3e-6);
+        EXPECT_LT(scene.world.clearance(s.surface[i], 0.01), 1e-6);
+    }
+    for (const auto& [rows, offset] : {std::pair{64, 12.163e-3}, std::pair{128, 15.806e-3}})
+        for (const Shot& shot : makeOs1Pattern(rows, 10)->sweep(3))
+        {
+            ASSERT_NEAR(shot.origin.norm(), offset, 1e-9);
+            ASSERT_EQ(shot.origin.z(), 0);
+            // Where the head looks: between the rows that are staggered to both sides of it.
+            const Vector3d ahead(shot.direction.x(), shot.direction.y(), 0);
+            ASSERT_GT(shot.origin.dot(ahead.normalized()), offset * std::cos(4.3 * M_PI / 180));
+        }
+    EXPECT_TRUE(makeVlp16Pattern(10)->sweep(0)[5].origin.isZero());
 }
 
 TEST(Lidar, TruthIsThePointSeenFromTheEndOfTheScan)

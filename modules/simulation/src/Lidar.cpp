@@ -132,8 +132,8 @@ std::vector<Lidar::Return> Lidar::castAll(
             const double turn = random.uniform(0, M_PI), radius = std::sqrt(random.uniform());
             const double t = toSeconds(kStart + shot.t);
             const Pose T = motion.poseAt(t) * config_.T_imu_lidar;
-            const Vector3d direction = T.R * shot.direction;
-            const auto hit = castBeam(scene, t, T.p, direction, config_, turn, radius);
+            const Vector3d direction = T.R * shot.direction, origin = T * shot.origin;
+            const auto hit = castBeam(scene, t, origin, direction, config_, turn, radius);
             if (!hit || loss < config_.dropout) continue;
             if (config_.detection_range > 0 &&
                 luck > detectionProbability(*hit, direction, config_.detection_range))
@@ -144,12 +144,12 @@ std::vector<Lidar::Return> Lidar::castAll(
             if (range < config_.min_range || range > config_.max_range) continue;
 
             Return r;
-            r.point.position = (range * shot.direction).cast<float>();
+            r.point.position = (shot.origin + range * shot.direction).cast<float>();
             r.point.intensity = static_cast<float>(std::round(
                 255 * std::clamp(-hit->normal.dot(direction) * hit->reflectivity, 0.0, 1.0)));
             r.point.offset = static_cast<std::int32_t>(shot.t - shots.front().t);
             r.point.ring = shot.ring;
-            r.surface = T.p + hit->range * direction;
+            r.surface = origin + hit->range * direction;
             parts[chunk].push_back(r);
         }
     };

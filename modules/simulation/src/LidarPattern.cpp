@@ -18,8 +18,12 @@ Duration ticked(double seconds)
 class SpinningPattern : public LidarPattern
 {
  public:
-    SpinningPattern(std::vector<Laser> lasers, double firing_period, double rotation_rate)
-        : lasers_(std::move(lasers)), firing_period_(firing_period), rate_(rotation_rate)
+    SpinningPattern(
+        std::vector<Laser> lasers, double firing_period, double rotation_rate, double beam_origin)
+        : lasers_(std::move(lasers)),
+          firing_period_(firing_period),
+          rate_(rotation_rate),
+          beam_origin_(beam_origin)
     {
     }
 
@@ -35,7 +39,9 @@ class SpinningPattern : public LidarPattern
                 const Laser& l = lasers_[laser];
                 Shot shot;
                 shot.t = ticked(firing_period_ * static_cast<double>(i) + l.delay);
-                const double azimuth = 2 * M_PI * rate_ * toSeconds(shot.t) + l.azimuth;
+                const double head = 2 * M_PI * rate_ * toSeconds(shot.t);
+                shot.origin = beam_origin_ * Vector3d(std::cos(head), -std::sin(head), 0);
+                const double azimuth = head + l.azimuth;
                 shot.direction = {
                     std::cos(l.elevation) * std::cos(azimuth),
                     -std::cos(l.elevation) * std::sin(azimuth), std::sin(l.elevation)};
@@ -49,7 +55,7 @@ class SpinningPattern : public LidarPattern
 
  private:
     std::vector<Laser> lasers_;
-    double firing_period_, rate_;
+    double firing_period_, rate_, beam_origin_;
 };
 
 class RosettePattern : public LidarPattern
@@ -94,12 +100,13 @@ class RosettePattern : public LidarPattern
 }  // namespace
 
 std::unique_ptr<LidarPattern> makeSpinningPattern(
-    std::vector<Laser> lasers, double firing_period, double rotation_rate)
+    std::vector<Laser> lasers, double firing_period, double rotation_rate, double beam_origin)
 {
     if (lasers.empty() || !(firing_period > 0) || !(rotation_rate > 0) ||
         rotation_rate * firing_period > 0.5)
         throw std::invalid_argument("a spinning LiDAR needs lasers, and several firings a turn");
-    return std::make_unique<SpinningPattern>(std::move(lasers), firing_period, rotation_rate);
+    return std::make_unique<SpinningPattern>(
+        std::move(lasers), firing_period, rotation_rate, beam_origin);
 }
 
 std::unique_ptr<LidarPattern> makeVlp16Pattern(double rotation_rate)
@@ -146,7 +153,9 @@ std::unique_ptr<LidarPattern> makeOs1Pattern(int rows, double rotation_rate)
         const double elevation = half_view * (1 - 2.0 * i / (rows - 1));
         lasers.push_back({elevation * kDegree, (1.5 - i % 4) * stagger * kDegree, 0});
     }
-    return makeSpinningPattern(std::move(lasers), 1 / (1024 * rotation_rate), rotation_rate);
+    return makeSpinningPattern(
+        std::move(lasers), 1 / (1024 * rotation_rate), rotation_rate,
+        rows == 64 ? 12.163e-3 : 15.806e-3);
 }
 
 std::unique_ptr<LidarPattern> makeRosettePattern(double sweep_rate)

@@ -15,6 +15,7 @@ struct Shot
     Duration t =
         0;  //!< since the sensor started to turn [ns]; a multiple of 100 ns, the tick of rawlogs
     Vector3d direction = Vector3d::UnitX();  //!< unit, sensor frame
+    Vector3d origin = Vector3d::Zero();      //!< of the beam, sensor frame [m]
     std::uint16_t ring = 0;
 };
 
@@ -38,9 +39,9 @@ struct Laser
 };
 
 /** A head that turns clockwise, seen from above, and starts at +x: azimuth a looks at (cos a, -sin
- * a). */
+ * a). The beams start `beam_origin` [m] off the axis, where the head looks to. */
 std::unique_ptr<LidarPattern> makeSpinningPattern(
-    std::vector<Laser> lasers, double firing_period, double rotation_rate);
+    std::vector<Laser> lasers, double firing_period, double rotation_rate, double beam_origin = 0);
 
 /** Velodyne VLP-16: 16 lasers in the order of firing. User Manual 63-9243: 2.304 us a laser, 55.296
  * us a firing sequence, elevations -15 1 -13 3 ... -1 15 degrees. */
@@ -58,7 +59,9 @@ std::unique_ptr<LidarPattern> makeHdl64Pattern(double rotation_rate);
 
 /** Ouster OS1 with 64 or 128 rows and 1024 columns a turn; all rows of a column fire at once.
  * OS1-64 (Gen 1 data sheet): 33.2 degrees in even steps, azimuths staggered by 2.11 degrees over
- * four rows. OS1-128 (metadata of a unit): 42.8 degrees in even steps, staggered by 2.81. */
+ * four rows. OS1-128 (metadata of a unit): 42.8 degrees in even steps, staggered by 2.81. Beams
+ * start 12.163 mm (Gen 1) and 15.806 mm (later) off the axis: lidar_origin_to_beam_origin_mm, as
+ * the manufacturer's SDK takes it by default and the metadata of the unit say. */
 std::unique_ptr<LidarPattern> makeOs1Pattern(int rows, double rotation_rate);
 
 /** A rosette that never repeats, as of a Livox Mid-70: 100,000 points a second in a circle of 70.4
