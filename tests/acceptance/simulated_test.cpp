@@ -1,0 +1,70 @@
+/** Recordings of taut-simulate through taut-slam: what is wrong in them is known. */
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "slam_program.h"
+#include "taut/trajectory/PointTruth.h"
+#include "temporary_folder.h"
+
+namespace
+{
+using namespace taut;
+using namespace taut::test;
+
+constexpr double kJump = 8.5;  // [s] since the start
+
+/** The scenario with all faults, shorter and with fewer points: an IMU gap at 5 s, a LiDAR gap at
+ * 6.5 s, and all clocks put forward at kJump. */
+class WalkWithFaults : public testing::Test
+{
+ protected:
+    WalkWithFaults()
+    {
+        const ProgramRun run = runProgram(
+            TAUT_SIMULATE, "-q --points -c " TAUT_CONFIG "/scenarios/hall_walk_faults.yaml -o " +
+                               log_ +
+                               " --set duration=10 --set rest=3 --set lidar.dropout=0.6"
+                               " --set faults.imu_gap.at=5 --set faults.lidar_gap.at=6.5"
+                               " --set faults.time_jump.at=" +
+                               std::to_string(kJump));
+        EXPECT_EQ(run.exit_code, 0) << run.output;
+    }
+
+    const TemporaryFolder folder_;
+    const std::string log_ = folder_ / "log.rawlog", truth_ = folder_ / "log.gt.tum",
+                      out_ = folder_ / "out";
+};
+
+TEST_F(WalkWithFaults, IsFollowedToItsEndAndItsFaultsAreNamed)
+{
+    const ProgramRun run = slam(log_, out_, "-s initialization.rest_duration=3");
+    EXPECT_EQ(run.exit_code, 3) << run.output;
+    const auto metrics = nlohmann::json::parse(contentOf(out_ + "/metrics.json"));
+    for (const char* kind : {"imu_gap", "lidar_gap", "imu_time"})
+        EXPECT_TRUE(metrics["warnings"].contains(kind)) << kind;
+    EXPECT_EQ(metrics["warnings"]["imu_gap"], 2) << "a gap, and the clocks that jump";
+    const Trajectory truth = readTum(truth_), estimate = readTum(out_ + "/trajectory.tum");
+    EXPECT_LT(toSeconds(truth.back().t - estimate.back().t), 0.3);
+    for (const StampedPose& pose : estimate) ASSERT_TRUE(pose.T_world_imu.p.allFinite());
+}
+
+TEST_F(WalkWithFaults, IsFollowedToCentimetresUntilTheClocksJump)
+{
+    const ProgramRun run = slam(
+        log_, out_,
+        "-s initialization.rest_duration=3 -s output.undistorted_points=true --to-time " +
+            std::to_string(kJump - 0.2));
+    EXPECT_EQ(run.exit_code, 3) << run.output;
+    ScoreOptions options;
+    options.min_coverage = 0.5;  // of a truth that goes on after the jump
+    const Scores scores =
+        scoreTrajectory(readTum(truth_), readTum(out_ + "/trajectory.tum"), options);
+    EXPECT_LT(scores.absolute.position.rmse, 0.03);
+    EXPECT_LT(scores.absolute.position.max, 0.15);
+    // Although some points are not finite: readers drop them, and the truth has none of them.
+    const PointScores points = scorePoints(folder_ / "log.points", out_ + "/undistorted.points");
+    EXPECT_LT(points.rmse, 0.05);
+    EXPECT_LT(points.median_scan, 0.02);
+}
+}  // namespace
