@@ -4,6 +4,8 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <regex>
+#include <type_traits>
 
 #include "../CommandLine.h"
 #include "../Progress.h"
@@ -29,19 +31,16 @@ class Import
  public:
     explicit Import(const Options& options)
         : options_(options),
-          rig_(options.rig.empty() ? Rig{} : loadRig(options.rig)),
           progress_(!options.quiet),
-          warnings_([this](const Warning& w) { print(w); })
+          warnings_([this](const Warning& w) { print(w); }),
+          rig_(readRig())
     {
     }
 
     /** The exit code. */
     int execute()
     {
-        ImportOptions import = options_.import;
-        if (rig_.imu.accel_scale != 1) import.accel_scale = rig_.imu.accel_scale;
-        if (rig_.imu.gyro_scale != 1) import.gyro_scale = rig_.imu.gyro_scale;
-        const auto source = openImportSource(options_.source, import, warnings_.sink());
+        const auto source = openImportSource(options_.source, options(), warnings_.sink());
         RawlogWriterConfig config;
         config.lidar_label = options_.lidar_label;
         config.imu_label = options_.imu_label;
@@ -56,6 +55,34 @@ class Import
     }
 
  private:
+    /** Without the parts that describe another sensor than the one that is written. */
+    Rig readRig()
+    {
+        if (options_.rig.empty()) return {};
+        Rig rig = loadRig(options_.rig);
+        if (!matches(rig.lidar.label, options_.lidar_label)) rig.lidar = {};
+        if (!matches(rig.imu.label, options_.imu_label)) rig.imu = {};
+        return rig;
+    }
+
+    bool matches(const std::string& expression, const std::string& label)
+    {
+        if (expression.empty() || std::regex_match(label, std::regex(expression))) return true;
+        warnings_.add(
+            {0, "rig_unused",
+             "the rig file describes '" + expression + "', but the label written is '" + label +
+                 "'"});
+        return false;
+    }
+
+    ImportOptions options() const
+    {
+        ImportOptions import = options_.import;
+        if (rig_.imu.accel_scale != 1) import.accel_scale = rig_.imu.accel_scale;
+        if (rig_.imu.gyro_scale != 1) import.gyro_scale = rig_.imu.gyro_scale;
+        return import;
+    }
+
     void print(const Warning& w)
     {
         progress_.clear();
@@ -85,6 +112,9 @@ class Import
     template <class AnyScan>
     void add(AnyScan& scan, RawlogWriter& writer)
     {
+        const Duration clock_offset = fromSeconds(rig_.lidar.clock_offset);
+        scan.stamp += clock_offset;
+        if constexpr (std::is_same_v<AnyScan, Scan>) scan.end += clock_offset;
         scans_.add(scan.stamp);
         if (rig_.lidar.T_vehicle_lidar)
             scan.T_imu_lidar =
@@ -99,12 +129,16 @@ class Import
         std::printf("LiDAR '%s': %s\n", options_.lidar_label.c_str(), scans_.text().c_str());
         std::printf("IMU '%s': %s\n", options_.imu_label.c_str(), imu_.text().c_str());
         for (const std::string& finding : source.findings()) std::printf("%s\n", finding.c_str());
+        if (!options_.rig.empty())
+            std::printf(
+                "poses, units and clock of the rig file are in the rawlog: do not give it to "
+                "taut-slam again\n");
     }
 
     const Options& options_;
-    Rig rig_;
     Progress progress_;
     WarningLog warnings_;
+    Rig rig_;
     SensorSummary scans_, imu_;
 };
 

@@ -1,12 +1,11 @@
 #include <gmock/gmock.h>
 
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
 
+#include "kitti_support.h"
 #include "reference.h"
-#include "taut/core/TimeText.h"
 #include "temporary_folder.h"
 
 namespace taut::test
@@ -33,32 +32,6 @@ const Reference& reference()
 {
     static const Reference reference = atTheBack();
     return reference;
-}
-
-std::string dateText(Time t)
-{
-    const std::time_t seconds = t / 1'000'000'000;
-    std::tm date{};
-    gmtime_r(&seconds, &date);
-    char text[40];
-    std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &date);
-    return text + formatSeconds(t % 1'000'000'000).substr(1);
-}
-
-std::string frameName(std::size_t frame, const std::string& ending)
-{
-    const std::string number = std::to_string(frame);
-    return std::string(10 - number.size(), '0') + number + ending;
-}
-
-void writeBin(const std::string& path, const Scan& scan)
-{
-    std::ofstream file(path, std::ios::binary);
-    for (const LidarPoint& p : scan.points)
-    {
-        const float values[] = {p.position.x(), p.position.y(), p.position.z(), p.intensity / 255};
-        file.write(reinterpret_cast<const char*>(values), sizeof values);
-    }
 }
 
 void writeOxts(const fs::path& folder, const ImuSamples& samples, const Vector3d& axes)

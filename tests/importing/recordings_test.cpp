@@ -7,6 +7,9 @@
 
 #include "data_folder.h"
 #include "import_support.h"
+#include "kitti_support.h"
+#include "taut/rawlog/RawlogSource.h"
+#include "temporary_folder.h"
 
 namespace taut::test
 {
@@ -131,6 +134,47 @@ TEST_F(ACapture, OfAnOusterHasTheFramesTimesAndForcesOfItsFacts)
         EXPECT_NEAR(accel[i], facts_["imu_acc_mean_ms2"][i].get<double>(), 1e-6);
         EXPECT_NEAR(gyro[i], facts_["imu_gyro_mean_rads"][i].get<double>(), 1e-6);
     }
+}
+
+// A drive of KITTI-360 that somebody else gave times to, without them: they come back.
+TEST(AKitti360Drive, GetsTheTimesOfAnIndependentConversionFromTheAzimuth)
+{
+    const auto log = dataFolder() / "street_hdl64.rawlog";
+    if (!std::filesystem::exists(log)) GTEST_SKIP() << "street_hdl64.rawlog is absent";
+    const TemporaryFolder folder;
+    const std::string drive = folder / "data_3d_raw/drive";
+    std::filesystem::create_directories(drive + "/velodyne_points/data");
+    RawlogConfig config;
+    config.path = log.string();
+    config.only_first_n = 3;
+    RawlogSource source(config);
+    std::vector<Scan> scans;
+    while (const auto measurement = source.next())
+        if (const auto* scan = std::get_if<Scan>(&*measurement)) scans.push_back(*scan);
+    ASSERT_EQ(scans.size(), 3U);
+    std::ofstream stamps(drive + "/velodyne_points/timestamps.txt");
+    for (std::size_t k = 0; k < scans.size(); k++)
+    {
+        const Duration half = (scans[1].stamp - scans[0].stamp) / 2;
+        stamps << dateText(scans[k].stamp + half) << "\n";
+        writeBin(drive + "/velodyne_points/data/" + frameName(k, ".bin"), scans[k]);
+    }
+    stamps.close();
+
+    const Imported all = importAll(drive);
+    ASSERT_EQ(all.scans.size(), 3U) << all.failure;
+    std::size_t differing = 0;
+    for (std::size_t k = 0; k < scans.size(); k++)
+    {
+        ASSERT_EQ(all.scans[k].points.size(), scans[k].points.size());
+        for (std::size_t i = 0; i < scans[k].points.size(); i++)
+        {
+            const Duration difference =
+                all.scans[k].timeOf(all.scans[k].points[i]) - scans[k].timeOf(scans[k].points[i]);
+            differing += std::abs(difference) > kMillisecond;
+        }
+    }
+    EXPECT_LT(differing, 100U);  // exactly at the back, begin and end are the same to an azimuth
 }
 }  // namespace
 }  // namespace taut::test

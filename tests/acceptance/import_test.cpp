@@ -1,0 +1,237 @@
+/** taut-import as a user runs it, and taut-slam on what it wrote. */
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "data_folder.h"
+#include "slam_program.h"
+#include "taut/core/TimeText.h"
+#include "taut/rawlog/RawlogSource.h"
+#include "temporary_folder.h"
+
+namespace
+{
+using namespace taut;
+using namespace taut::test;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+ProgramRun import(const std::string& arguments)
+{
+    return runProgram(TAUT_IMPORT, arguments);
+}
+
+template <class T>
+void put(std::ofstream& file, T value)
+{
+    file.write(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/** x, y, z, ring and time, binary. */
+void writePly(const std::string& path, const Scan& scan)
+{
+    std::ofstream file(path, std::ios::binary);
+    file << "ply\nformat binary_little_endian 1.0\nelement vertex " << scan.points.size()
+         << "\nproperty float x\nproperty float y\nproperty float z\nproperty ushort ring\n"
+            "property int dt_ns\nend_header\n";
+    for (const LidarPoint& p : scan.points)
+    {
+        for (int i = 0; i < 3; i++) put(file, p.position[i]);
+        put(file, p.ring);
+        put(file, p.offset);
+    }
+}
+
+/** The sample as a plain folder, up to a time, with the IMU in g and deg/s. */
+void writeFolder(const std::string& folder, double to_time)
+{
+    fs::create_directories(folder);
+    RawlogConfig config;
+    config.path = kSample;
+    config.to_time = to_time;
+    RawlogSource source(config);
+    std::ofstream imu(folder + "/imu.csv");
+    imu << "t gyro_x gyro_y gyro_z accel_x accel_y accel_z\n";
+    imu.precision(12);
+    while (const auto measurement = source.next())
+    {
+        if (const auto* scan = std::get_if<Scan>(&*measurement))
+        {
+            writePly(folder + "/" + formatSeconds(scan->stamp) + ".ply", *scan);
+            continue;
+        }
+        const auto& s = std::get<ImuSample>(*measurement);
+        imu << formatSeconds(s.t);
+        for (int i = 0; i < 3; i++) imu << " " << s.gyro[i] * 180 / M_PI;
+        for (int i = 0; i < 3; i++) imu << " " << s.accel[i] / 9.80665;
+        imu << "\n";
+    }
+}
+
+/** Where the sample's LiDAR is on its IMU, which a plain folder does not tell. */
+void writeRig(const std::string& path)
+{
+    RawlogConfig config;
+    config.path = kSample;
+    RawlogSource source(config);
+    while (const auto measurement = source.next())
+    {
+        const auto* scan = std::get_if<Scan>(&*measurement);
+        if (!scan) continue;
+        const Pose& T = scan->T_imu_lidar;
+        const double degree = M_PI / 180;
+        std::ofstream(path) << "lidar: {pose: {x: " << T.p.x() << ", y: " << T.p.y()
+                            << ", z: " << T.p.z()
+                            << ", yaw: " << std::atan2(T.R(1, 0), T.R(0, 0)) / degree
+                            << ", pitch: " << std::asin(-T.R(2, 0)) / degree
+                            << ", roll: " << std::atan2(T.R(2, 1), T.R(2, 2)) / degree << "}}\n";
+        return;
+    }
+}
+
+TEST(AnImport, OfAPlainFolderLosesNoAccuracy)
+{
+    const TemporaryFolder folder;
+    const std::string in = folder / "in", log = folder / "log.rawlog", out = folder / "out";
+    writeFolder(in, 30);
+    writeRig(folder / "rig.yaml");
+    const ProgramRun run = import(in + " -o " + log + " -r " + (folder / "rig.yaml"));
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    EXPECT_THAT(run.output, HasSubstr("124 in"));
+    EXPECT_THAT(run.output, HasSubstr("specific force in g, converted"));
+    EXPECT_THAT(run.output, HasSubstr("rates in deg/s, converted"));
+    ASSERT_EQ(slam(log, out).exit_code, 0);
+    // The sample itself: 1.1 mm.
+    EXPECT_LT(positionError(kSampleTruth, out + "/trajectory.tum"), 0.003);
+}
+
+TEST(AnImport, IsRefusedWithOneLineAndLeavesNothing)
+{
+    const TemporaryFolder folder;
+    const std::string log = folder / "log.rawlog";
+    std::ofstream(folder / "text") << "hello";
+    std::ofstream(folder / "head.pcap") << "\xd4\xc3\xb2\xa1 and no more";
+    fs::create_directories(folder / "empty");
+    for (const char* source : {"none", "text", "head.pcap", "empty"})
+    {
+        const ProgramRun run = import((folder / source) + " -o " + log);
+        EXPECT_EQ(run.exit_code, 1) << source;
+        EXPECT_THAT(run.output, HasSubstr(source));
+        EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+        EXPECT_FALSE(fs::exists(log)) << source;
+    }
+}
+
+TEST(AnImport, GivesTwoForBadUsageAndOverwritesOnlyWhenTold)
+{
+    const TemporaryFolder folder;
+    const std::string log = folder / "log.rawlog", in = folder / "in";
+    EXPECT_EQ(import("").exit_code, 2);
+    EXPECT_EQ(import(in).exit_code, 2);
+    EXPECT_EQ(import("--help").exit_code, 0);
+    writeFolder(in, 0.5);
+    std::ofstream(log) << "mine";
+    EXPECT_EQ(import(in + " -o " + log).exit_code, 2);
+    EXPECT_EQ(contentOf(log), "mine");
+    EXPECT_EQ(import(in + " -w -o " + log).exit_code, 0);
+    EXPECT_GT(contentOf(log).size(), 10000U);
+}
+
+TEST(AnImport, ThatLacksAPartGivesThreeAndWritesTheRest)
+{
+    const TemporaryFolder folder;
+    const std::string log = folder / "log.rawlog", in = folder / "in";
+    writeFolder(in, 0.5);
+    fs::remove(in + "/imu.csv");
+    const ProgramRun run = import(in + " -o " + log);
+    EXPECT_EQ(run.exit_code, 3);
+    EXPECT_THAT(run.output, HasSubstr("no_imu"));
+    EXPECT_TRUE(fs::exists(log));
+}
+
+TEST(AnImport, WritesPosesAndLabelsAsTold)
+{
+    const TemporaryFolder folder;
+    const std::string log = folder / "log.rawlog", in = folder / "in", rig = folder / "rig.yaml";
+    writeFolder(in, 0.5);
+    std::ofstream(rig) << "lidar: {label: 'front', pose: {x: 1, z: 2}, clock_offset: 0.25}\n"
+                          "imu: {pose: {z: 0.5}}\n";
+    const std::string labels = " --lidar-label front --imu-label body ";
+    ASSERT_EQ(import(in + labels + "-r " + rig + " -o " + log).exit_code, 0);
+    RawlogConfig config;
+    config.path = log;
+    RawlogSource source(config);
+    std::optional<Scan> scan;
+    while (const auto measurement = source.next())
+        if (!scan && std::holds_alternative<Scan>(*measurement))
+            scan = std::get<Scan>(*measurement);
+    ASSERT_TRUE(scan);
+    EXPECT_EQ(scan->sensor_label, "front");
+    EXPECT_EQ(source.progress().imu_label, "body");
+    EXPECT_LT((scan->T_imu_lidar.p - Vector3d(1, 0, 1.5)).norm(), 1e-9);
+    config.path = kSample;
+    RawlogSource sample(config);
+    std::optional<Scan> first;
+    while (!first)
+        if (const auto m = sample.next(); std::holds_alternative<Scan>(*m))
+            first = std::get<Scan>(*m);
+    EXPECT_NEAR(toSeconds(scan->stamp - first->stamp), 0.25, 1e-4);
+
+    std::ofstream(rig) << "lidar: {label: 'rear', pose: {x: 1, z: 2}}\n";
+    const ProgramRun run = import(in + labels + "-w -r " + rig + " -o " + log);
+    EXPECT_EQ(run.exit_code, 3);
+    EXPECT_THAT(run.output, HasSubstr("rig_unused"));
+}
+
+class ACapture : public testing::Test
+{
+ protected:
+    /** Imports it and runs taut-slam; false where it is absent. */
+    bool run(const std::string& name)
+    {
+        const auto pcap = dataFolder() / "pcap" / (name + ".pcap");
+        if (!fs::exists(pcap)) return false;
+        const std::string log = folder_ / "log.rawlog";
+        const ProgramRun imported = import(pcap.string() + " -o " + log);
+        EXPECT_EQ(imported.exit_code, 0) << imported.output;
+        const ProgramRun run = slam(log, folder_ / "out");
+        EXPECT_EQ(run.exit_code, 0) << run.output;
+        trajectory_ = readTum(folder_ / "out/trajectory.tum");
+        return true;
+    }
+
+    const TemporaryFolder folder_;
+    Trajectory trajectory_;
+};
+
+TEST_F(ACapture, OfAVlp16OnItsStandStaysWhereItIs)
+{
+    if (!run("vlp16_5hz")) GTEST_SKIP() << "vlp16_5hz.pcap is absent";
+    ASSERT_EQ(trajectory_.size(), 19U);
+    for (const StampedPose& pose : trajectory_)  // measured: 0.12 m, without an IMU
+        EXPECT_LT((pose.T_world_imu.p - trajectory_[0].T_world_imu.p).norm(), 0.2);
+}
+
+// The facts beside the capture say 0.498 m, by another program.
+TEST_F(ACapture, OfAnOusterMovesAsFarAsItsFactsSay)
+{
+    if (!run("ouster_os1_128")) GTEST_SKIP() << "ouster_os1_128.pcap is absent";
+    ASSERT_EQ(trajectory_.size(), 3U);
+    EXPECT_NEAR((trajectory_[2].T_world_imu.p - trajectory_[0].T_world_imu.p).norm(), 0.498, 0.01);
+}
+
+TEST_F(ACapture, CutOffGivesThreeAndWhatIsThere)
+{
+    const auto pcap = dataFolder() / "pcap/vlp16_gps.pcap";
+    if (!fs::exists(pcap)) GTEST_SKIP() << "vlp16_gps.pcap is absent";
+    const std::string cut = folder_ / "cut.pcap";
+    fs::copy_file(pcap, cut);
+    fs::permissions(cut, fs::perms::owner_all);
+    fs::resize_file(cut, fs::file_size(cut) / 2);
+    const ProgramRun run = import(cut + " -o " + (folder_ / "log.rawlog"));
+    EXPECT_EQ(run.exit_code, 3) << run.output;
+    EXPECT_THAT(run.output, HasSubstr("pcap_truncated"));
+    EXPECT_TRUE(fs::exists(folder_ / "log.rawlog"));
+}
+}  // namespace
