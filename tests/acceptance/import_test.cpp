@@ -1,5 +1,9 @@
 /** taut-import as a user runs it, and taut-slam on what it wrote. */
 #include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -182,6 +186,45 @@ TEST(AnImport, WritesPosesAndLabelsAsTold)
     const ProgramRun run = import(in + labels + "-w -r " + rig + " -o " + log);
     EXPECT_EQ(run.exit_code, 3);
     EXPECT_THAT(run.output, HasSubstr("rig_unused"));
+}
+
+// imu.csv is a pipe: when it has swallowed more than it can hold, the program has read the samples.
+TEST(AnInterruptedImport, SavesWhatWasRead)
+{
+    const TemporaryFolder folder;
+    const std::string in = folder / "in", log = folder / "log.rawlog", pipe = in + "/imu.csv";
+    writeFolder(in, 4);
+    const std::string samples = contentOf(pipe);
+    fs::remove(pipe);
+    const auto clouds = static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(in), fs::directory_iterator()));
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    const pid_t child = fork();
+    if (child == 0)
+    {
+        execl(TAUT_IMPORT, TAUT_IMPORT, in.c_str(), "-q", "-o", log.c_str(), nullptr);
+        _exit(127);
+    }
+    {
+        std::ofstream file(pipe);
+        file << samples.substr(0, samples.rfind('\n', samples.size() * 3 / 4) + 1);
+        for (int i = 0; i < 2000; i++) file << "#" << std::string(99, ' ') << "\n";
+        file.flush();
+        kill(child, SIGINT);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 3);
+    RawlogConfig config;
+    config.path = log;
+    RawlogSource source(config);
+    while (source.next())
+    {
+    }
+    EXPECT_FALSE(source.incomplete());
+    EXPECT_GT(source.progress().scans, 20U);
+    EXPECT_LT(source.progress().scans, clouds);
 }
 
 class ACapture : public testing::Test
