@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "surfaces.h"
 
 using namespace taut;
@@ -99,6 +101,35 @@ TEST(OctreeMap, NearAStepSigmaTellsHowFarTheSurfaceMayBe)
         EXPECT_LT(std::abs(c.direction.dot(query - c.point)), 3 * c.sigma);
     }
     EXPECT_GT(planes, 40);
+}
+
+TEST(OctreeMap, DoesNotMatchTheTopOfAFloorWithItsUnderside)
+{
+    // Seen from below on the way up, then from above.
+    OctreeMap map;
+    Random random(3);
+    const Patch underside = floorAt(1, 0.01);
+    const auto seenFrom = [](std::vector<MapPoint> points, const Vector3d& sensor)
+    {
+        for (MapPoint& p : points) p.view = (sensor - p.position).normalized();
+        return points;
+    };
+    for (int scan = 0; scan < 10; scan++)
+        map.insert(
+            seenFrom(underside.planePoints(random, 2000, FeatureKind::Any), {0, 0, 0}), single);
+    std::vector<MapPoint> queries;
+    for (int i = 0; i < 100; i++) queries.push_back({underside.at(random, 0.5), FeatureKind::Any});
+    const auto planesFrom = [&](const Vector3d& sensor)
+    {
+        std::vector<Correspondence> found;
+        map.match(seenFrom(queries, sensor), found, single);
+        return std::count_if(
+            found.begin(), found.end(),
+            [](const Correspondence& c) { return c.surface == Surface::Plane; });
+    };
+    EXPECT_EQ(planesFrom({0, 0, 0}), 100);
+    EXPECT_EQ(planesFrom({0, 0, 3}), 0);
+    EXPECT_EQ(planesFrom({0, 0, 0.5}), 100);
 }
 
 TEST(OctreeMap, DoesNotMatchBeyondTheGate)

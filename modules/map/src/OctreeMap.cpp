@@ -14,6 +14,8 @@ namespace
 constexpr unsigned kTreeDepth = 16;
 constexpr std::uint32_t kMaxPatience = 15;  // insertions
 constexpr double kGrowth = 1.2;             // of a window's points, that it is computed anew
+constexpr double kSameView = 1e-3;          // squared, between iterations
+constexpr double kGrazing = 0.05;           // cosine to the normal
 constexpr double kBlockSize = 8.0;          // [m] about: unit of forgetting
 constexpr int kRecenterKeys = 16384;        // leaves from the origin: half of what keys can name
 
@@ -112,7 +114,8 @@ void OctreeMap::insert(const std::vector<MapPoint>& points, Executor& executor)
     }
     tree_->add(
         std::move(entries), depthOf(config.scales - 1), config.leaf_capacity,
-        [&](std::uint32_t i, PointStatistics& sum) { sum.add(points[i].position); }, executor);
+        [&](std::uint32_t i, PointStatistics& sum) { sum.add(points[i].position, points[i].view); },
+        executor);
     insertions_++;
 }
 
@@ -286,6 +289,7 @@ void OctreeMap::compute(Window& window, const PointStatistics& statistics) const
 {
     window.count = statistics.count;
     window.mean = statistics.mean();
+    window.view = statistics.views / statistics.count;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
     eigen.computeDirect(Eigen::Matrix3d(statistics.scatter() / statistics.count));
     window.normal = eigen.eigenvectors().col(0);
@@ -303,6 +307,12 @@ bool OctreeMap::isPlane(const Window& w) const
            w.thickness2 < config.max_thickness * config.max_thickness &&
            w.thickness2 < config.max_flatness * config.max_flatness * w.width2 &&
            w.width2 > config.min_width * config.min_width && w.width2 > w.min_width2;
+}
+
+bool OctreeMap::isOnSideOf(const Window& w, const MapPoint& query)
+{
+    // The other side of a wall or of a floor is another surface; a grazing view is of either.
+    return w.normal.dot(w.view) * w.normal.dot(query.view) > -kGrazing * kGrazing;
 }
 
 bool OctreeMap::isLine(const Window& w) const
@@ -380,7 +390,7 @@ void OctreeMap::findWindows(const std::vector<MapPoint>& queries, int l, Executo
         });
 }
 
-void OctreeMap::advance(Search& search, int l) const
+void OctreeMap::advance(Search& search, const MapPoint& query, int l) const
 {
     const auto& windows = levels_[static_cast<std::size_t>(l)].windows;
     const Window& w = windows[search.window];
@@ -395,8 +405,8 @@ void OctreeMap::advance(Search& search, int l) const
         search.active = false;  // smaller windows hold still fewer
         return;
     }
-    const FeatureKind kind = search.kind;
-    const bool plane = kind != FeatureKind::Edge && isPlane(w);
+    const FeatureKind kind = query.kind;
+    const bool plane = kind != FeatureKind::Edge && isPlane(w) && isOnSideOf(w, query);
     if (search.best_level < 0 || search.line)
     {
         if (plane)
@@ -417,7 +427,9 @@ void OctreeMap::advance(Search& search, int l) const
 bool OctreeMap::isSettled(const MapPoint& query, std::size_t i) const
 {
     const Search& search = searches_[i];
-    if (search.kind != query.kind || !query.position.allFinite()) return false;
+    if (search.kind != query.kind || (search.view - query.view).squaredNorm() > kSameView ||
+        !query.position.allFinite())
+        return false;
     for (int l = config.scales - 1; l >= search.last_level; l--)
     {
         std::array<std::uint16_t, 3> corner;
@@ -444,12 +456,13 @@ void OctreeMap::match(
         if (isSettled(queries[i], i)) continue;
         searches_[i] = {};
         searches_[i].kind = queries[i].kind;
+        searches_[i].view = queries[i].view;
     }
     for (int level = config.scales - 1; level >= 0; level--)
     {
         findWindows(queries, level, executor);
-        for (Search& search : searches_)
-            if (search.active) advance(search, level);
+        for (std::size_t i = 0; i < queries.size(); i++)
+            if (searches_[i].active) advance(searches_[i], queries[i], level);
     }
     for (Search& search : searches_) search.active = false;
     correspondences.assign(queries.size(), {});

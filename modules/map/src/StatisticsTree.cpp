@@ -4,9 +4,10 @@
 
 namespace taut
 {
-void PointStatistics::add(const Eigen::Vector3d& p)
+void PointStatistics::add(const Eigen::Vector3d& p, const Eigen::Vector3d& view)
 {
     count += 1;
+    views += view;
     sum += p;
     moments[0] += p.x() * p.x();
     moments[1] += p.x() * p.y();
@@ -21,6 +22,7 @@ void PointStatistics::add(const PointStatistics& other)
     count += other.count;
     sum += other.sum;
     moments += other.moments;
+    views += other.views;
 }
 
 Eigen::Matrix3d PointStatistics::scatter() const

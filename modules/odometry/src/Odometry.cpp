@@ -118,7 +118,9 @@ void Odometry::estimate(
         Stopwatch watch;
         const std::vector<Vector3d> world = lidar.undistort(path);
         for (std::size_t j = 0; j < world.size(); j++)
-            queries[j] = {world[j], features.points[j].kind};
+            queries[j] = {
+                world[j], features.points[j].kind,
+                (problem.current().T_world_imu.p - world[j]).normalized()};
         config_.map->match(queries, correspondences, executor_);
         watch.stage(result.times.match);
 
@@ -204,7 +206,9 @@ void Odometry::insert(const Scan& scan, const SweepPath& path, ScanResult& resul
     for (std::size_t i = 0; i < kept; i++)
     {
         const LidarPoint& p = scan.points[i * stride];
-        points[i].position = poses.poseAt(scan.timeOf(p)) * Vector3d(p.position.cast<double>());
+        const Pose pose = poses.poseAt(scan.timeOf(p));
+        points[i].position = pose * Vector3d(p.position.cast<double>());
+        points[i].view = (pose.p - points[i].position).normalized();
     }
     config_.map->insert(points, executor_);
     result.points.resize(kept);

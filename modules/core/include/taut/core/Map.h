@@ -12,11 +12,12 @@
 
 namespace taut
 {
-/** A point in the world frame with the kind of surface it lies on. */
+/** A point in the world frame with the kind of surface it lies on, and the side it was seen from. */
 struct MapPoint
 {
     Vector3d position = Vector3d::Zero();  //!< [m], world frame
     FeatureKind kind = FeatureKind::Any;
+    Vector3d view = Vector3d::Zero();  //!< unit vector to the sensor; zero: not known
 };
 
 /** Plug point: the local map that features are matched with. */

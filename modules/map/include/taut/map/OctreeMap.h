@@ -36,7 +36,8 @@ struct OctreeMapConfig
  * is matched with the plane (or line) of the largest window around it that is as flat as the
  * smallest one: the scale at which the world is planar there. A window is the cube of 2 x 2 x 2
  * nodes around the node corner nearest to the query, so that no query lies near a window's edge,
- * where a surface would be seen cut in two. */
+ * where a surface would be seen cut in two. A surface seen from one side is not matched with
+ * queries seen from the other: both sides of a floor or a wall are surfaces of their own. */
 class OctreeMap : public Map
 {
     DEFINE_MRPT_OBJECT(OctreeMap, taut)
@@ -66,9 +67,10 @@ class OctreeMap : public Map
         double seen = 0;        //!< points at the last comparison
         double count = 0;       //!< points when it was computed; 0: not known yet
         Vector3d mean = Vector3d::Zero(), normal = Vector3d::UnitZ(), axis = Vector3d::UnitX();
-        double thickness2 = 0;           //!< unbiased variance along the normal [m^2]
-        double width2 = 0, length2 = 0;  //!< variances along the other two axes [m^2]
-        double min_width2 = 0;           //!< [m^2] of this size of window
+        Vector3d view = Vector3d::Zero();  //!< mean direction to the sensor
+        double thickness2 = 0;             //!< unbiased variance along the normal [m^2]
+        double width2 = 0, length2 = 0;    //!< variances along the other two axes [m^2]
+        double min_width2 = 0;             //!< [m^2] of this size of window
         std::array<std::uint16_t, 3> corner{};
         std::array<StatisticsTree::Place, 8> places;  //!< of its nodes
     };
@@ -96,7 +98,8 @@ class OctreeMap : public Map
         std::int8_t best_level = -1;
         std::int8_t last_level = 127;  //!< the last one it looked at
         bool active = true, line = false;
-        FeatureKind kind = FeatureKind::Any;
+        FeatureKind kind = FeatureKind::Any;  //!< of the query
+        Vector3d view = Vector3d::Zero();     //!< of the query
     };
     /** Where a query of the last match() looked: iterations seldom leave a window. */
     struct Lookup
@@ -116,12 +119,13 @@ class OctreeMap : public Map
     void compute(Window& window, const PointStatistics& statistics) const;
     void findWindows(const std::vector<MapPoint>& queries, int level, Executor& executor) const;
     bool isSettled(const MapPoint& query, std::size_t i) const;
-    void advance(Search& search, int level) const;
+    void advance(Search& search, const MapPoint& query, int level) const;
     Correspondence planeAt(const Vector3d& query, const Window& window) const;
     Correspondence lineAt(const Vector3d& query, const Window& window) const;
     double variance(const Window& window) const;
     bool isPlane(const Window& window) const;
     bool isLine(const Window& window) const;
+    static bool isOnSideOf(const Window& window, const MapPoint& query);
     unsigned depthOf(int level) const;
     unsigned blockDepth() const;
 

@@ -20,8 +20,9 @@ struct PointStatistics
     double count = 0;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     Eigen::Matrix<double, 6, 1> moments = Eigen::Matrix<double, 6, 1>::Zero();  // xx xy xz yy yz zz
+    Eigen::Vector3d views = Eigen::Vector3d::Zero();  //!< sum of the unit vectors to the sensor
 
-    void add(const Eigen::Vector3d& p);
+    void add(const Eigen::Vector3d& p, const Eigen::Vector3d& view = Eigen::Vector3d::Zero());
     void add(const PointStatistics& other);
     Eigen::Vector3d mean() const { return sum / count; }
     /** Sum of (p - mean)(p - mean)^T. */
@@ -29,7 +30,7 @@ struct PointStatistics
 
     bool operator==(const PointStatistics& o) const
     {
-        return count == o.count && sum == o.sum && moments == o.moments;
+        return count == o.count && sum == o.sum && moments == o.moments && views == o.views;
     }
 };
 
