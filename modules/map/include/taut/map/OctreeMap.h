@@ -126,7 +126,6 @@ class OctreeMap : public Map
     bool isPlane(const Window& window) const;
     bool isLine(const Window& window) const;
     static bool isOnSideOf(const Window& window, const MapPoint& query);
-    unsigned depthOf(int level) const;
     unsigned blockDepth() const;
 
     std::unique_ptr<StatisticsTree> tree_;
