@@ -4,7 +4,7 @@
 #include <optional>
 #include <thread>
 
-#include "CommandLine.h"
+#include "LogArguments.h"
 #include "Progress.h"
 #include "taut/inspection/InspectionReport.h"
 #include "taut/odometry/registerAll.h"
@@ -31,21 +31,7 @@ std::optional<Options> parse(int argc, char** argv)
     TCLAP::UnlabeledValueArg<std::string> input(
         "LOG.rawlog", "Rawlog to look at (observations or sensory frames, gz or not)", true, "",
         "LOG.rawlog", cmd);
-    TCLAP::ValueArg<std::string> rig(
-        "r", "rig", "Rig file: poses, noise and clocks of the sensors, over those in the log",
-        false, "", "RIG.yaml", cmd);
-    TCLAP::ValueArg<std::string> lidar(
-        "", "lidar", "Sensor label of the LiDAR, a regular expression (default: the only one)",
-        false, "", "REGEX", cmd);
-    TCLAP::ValueArg<std::string> imu(
-        "", "imu", "Sensor label of the IMU, a regular expression (default: the only one)", false,
-        "", "REGEX", cmd);
-    TCLAP::ValueArg<double> from(
-        "", "from-time", "Leave out what is earlier: seconds since the start of the log", false, 0,
-        "SECONDS", cmd);
-    TCLAP::ValueArg<double> to(
-        "", "to-time", "End there: seconds since the start of the log", false,
-        std::numeric_limits<double>::infinity(), "SECONDS", cmd);
+    taut::LogArguments part(cmd);
     TCLAP::ValueArg<double> window(
         "", "window",
         "Seconds, where the body turns most, whose scans are matched for clock offset and "
@@ -63,17 +49,15 @@ std::optional<Options> parse(int argc, char** argv)
     Options o;
     taut::RawlogConfig& log = o.inspection.log;
     log.path = input.getValue();
-    log.lidar_label = lidar.getValue();
-    log.imu_label = imu.getValue();
-    log.from_time = from.getValue();
-    log.to_time = to.getValue();
-    if (log.from_time < 0 || !(log.to_time > log.from_time))
-        throw taut::UsageError("--to-time must be later than --from-time, and neither negative");
+    log.lidar_label = part.lidarLabel();
+    log.imu_label = part.imuLabel();
+    log.from_time = part.fromTime();
+    log.to_time = part.toTime();
     if (!(window.getValue() >= 3 && window.getValue() <= 600))
         throw taut::UsageError("--window must be 3 to 600 s");
     if (threads.getValue() < 0 || threads.getValue() > 256)
         throw taut::UsageError("--threads must be 0 to 256");
-    if (!rig.getValue().empty()) log.rig = taut::loadRig(rig.getValue());
+    if (!part.rig().empty()) log.rig = taut::loadRig(part.rig());
     o.inspection.window = window.getValue();
     o.inspection.match_scans = !no_matching.getValue();
     o.threads = threads.getValue() > 0 ? threads.getValue()

@@ -3,7 +3,7 @@
 #include <map>
 #include <thread>
 
-#include "../CommandLine.h"
+#include "../LogArguments.h"
 
 namespace taut
 {
@@ -40,21 +40,7 @@ bool parseOptions(int argc, char** argv, Options& o)
     TCLAP::MultiArg<std::string> set(
         "s", "set", "Override a key of the method file, as estimation.undistortion=imu", false,
         "SECTION.KEY=VALUE", cmd);
-    TCLAP::ValueArg<std::string> rig(
-        "r", "rig", "Rig file: poses, noise and clocks of the sensors, over those in the log",
-        false, "", "RIG.yaml", cmd);
-    TCLAP::ValueArg<std::string> lidar(
-        "", "lidar", "Sensor label of the LiDAR, a regular expression (default: the only one)",
-        false, "", "REGEX", cmd);
-    TCLAP::ValueArg<std::string> imu(
-        "", "imu", "Sensor label of the IMU, a regular expression (default: the only one)", false,
-        "", "REGEX", cmd);
-    TCLAP::ValueArg<double> from(
-        "", "from-time", "Leave out what is earlier: seconds since the start of the log", false, 0,
-        "SECONDS", cmd);
-    TCLAP::ValueArg<double> to(
-        "", "to-time", "End there: seconds since the start of the log", false,
-        std::numeric_limits<double>::infinity(), "SECONDS", cmd);
+    LogArguments log(cmd);
     TCLAP::ValueArg<int> first(
         "", "only-first-n", "End after that many scans (0: all)", false, 0, "N", cmd);
     TCLAP::MultiArg<std::string> plugins(
@@ -75,11 +61,11 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.output = output.getValue();
     o.config = config.getValue();
     o.settings = set.getValue();
-    o.rig = rig.getValue();
-    o.lidar_label = lidar.getValue();
-    o.imu_label = imu.getValue();
-    o.from_time = from.getValue();
-    o.to_time = to.getValue();
+    o.rig = log.rig();
+    o.lidar_label = log.lidarLabel();
+    o.imu_label = log.imuLabel();
+    o.from_time = log.fromTime();
+    o.to_time = log.toTime();
     o.only_first_n = first.getValue();
     o.plugins = plugins.getValue();
     o.threads = threads.getValue();
@@ -87,8 +73,6 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.no_pictures = pictures.getValue();
     o.show_config = show.getValue();
     o.verbosity = quiet.getValue() ? 0 : verbosityOf(level.getValue());
-    if (o.from_time < 0 || !(o.to_time > o.from_time))
-        throw UsageError("--to-time must be later than --from-time, and neither negative");
     if (o.only_first_n < 0) throw UsageError("--only-first-n must not be negative");
     if (o.threads < 0 || o.threads > 256) throw UsageError("--threads must be 0 to 256");
     if (o.threads == 0) o.threads = static_cast<int>(std::thread::hardware_concurrency());

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "CommandLine.h"
+
+namespace taut
+{
+/** The options of every program that reads a rawlog: rig, sensors, part of the time. */
+class LogArguments
+{
+ public:
+    /** Adds them to the command line, which must be parsed before any of the following is asked. */
+    explicit LogArguments(TCLAP::CmdLine& cmd)
+        : rig_(
+              "r", "rig", "Rig file: poses, noise and clocks of the sensors, over those in the log",
+              false, "", "RIG.yaml", cmd),
+          lidar_(
+              "", "lidar",
+              "Sensor label of the LiDAR, a regular expression (default: the only one)", false, "",
+              "REGEX", cmd),
+          imu_(
+              "", "imu", "Sensor label of the IMU, a regular expression (default: the only one)",
+              false, "", "REGEX", cmd),
+          from_(
+              "", "from-time", "Leave out what is earlier: seconds since the start of the log",
+              false, 0, "SECONDS", cmd),
+          to_("", "to-time", "End there: seconds since the start of the log", false,
+              std::numeric_limits<double>::infinity(), "SECONDS", cmd)
+    {
+    }
+
+    const std::string& rig() { return rig_.getValue(); }
+    const std::string& lidarLabel() { return lidar_.getValue(); }
+    const std::string& imuLabel() { return imu_.getValue(); }
+    double fromTime() { return from_.getValue(); }
+    /** Throws UsageError if the part of the time is none. */
+    double toTime()
+    {
+        if (from_.getValue() < 0 || !(to_.getValue() > from_.getValue()))
+            throw UsageError("--to-time must be later than --from-time, and neither negative");
+        return to_.getValue();
+    }
+
+ private:
+    TCLAP::ValueArg<std::string> rig_, lidar_, imu_;
+    TCLAP::ValueArg<double> from_, to_;
+};
+}  // namespace taut
