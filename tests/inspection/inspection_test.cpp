@@ -266,6 +266,19 @@ TEST_F(Doctor, TakesThePartAndTheFactsOfTheRig)
     EXPECT_THAT(kindsOf(inspect(config).findings), ElementsAre());
 }
 
+TEST_F(Doctor, SurvivesValuesThatNoSensorGives)
+{
+    for (const double huge : {1e3, 1e20, 1e200})
+    {
+        for (std::size_t i = 600; i < 610; i++) log_.imu[i].gyro.x() = huge;
+        log_.imu[800].accel.y() = -huge;
+        log_.write(path_);
+        InspectionConfig config;
+        config.window = 3;
+        EXPECT_THAT(kindsOf(inspect(config).findings), Contains("imu_units"));
+    }
+}
+
 TEST_F(Doctor, MatchesTheWindowThatTurnsMostAndFindsTheClock)
 {
     Recording recording;
