@@ -53,6 +53,10 @@ else
   echo "gnuplot is absent (Debian: gnuplot-nox): no plots" >&2
 fi
 
+# What has no rows yet leaves the page as it is.
+for file in "$tables"/*.md; do
+  case $file in */origin.md) ;; *) [ "$(wc -l <"$file")" -gt 2 ] || rm "$file" ;; esac
+done
 [ "${2:-no}" = yes ] || exit 0
 find "$folder" -maxdepth 1 -name 'results_*.svg' -exec cp {} "$root/docs/images/" \;
 # Between the lines "<!-- table NAME -->" and "<!-- end -->" of the page stands the table of that name.
@@ -61,7 +65,6 @@ awk -v tables="$tables" '
   !skip {print}
   /^<!-- table / {
     file = tables "/" $3 ".md"
-    skip = 1
-    while ((getline line <file) > 0) print line
+    while ((getline line <file) > 0) {print line; skip = 1}
   }' "$root/docs/results.md" >"$folder/results.md"
 mv "$folder/results.md" "$root/docs/results.md"

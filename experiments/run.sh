@@ -43,11 +43,10 @@ plan() { # the jobs of a group, one a line
   case $1 in
     sweep)
       for seed in $(seq "$seeds"); do
-        for place in "rate "{180,60,500,0,360} "speed "{10,2,15,0.5,5}; do
-          echo "sweep good $place $seed"
-          for prior in bias consumer 100hz offset all; do
-            [[ " rate 180 rate 500 speed 10 " != *" $place "* ]] || echo "sweep $prior $place $seed"
-          done
+        for prior in good bias consumer 100hz offset all; do echo "sweep $prior rate 180 $seed"; done
+        for place in "rate "{60,500,0,360} "speed "{10,2,15,0.5,5}; do echo "sweep good $place $seed"; done
+        for prior in bias consumer 100hz offset all; do
+          for place in "rate 500" "speed 10"; do echo "sweep $prior $place $seed"; done
         done
       done ;;
     recording) for name in hall_fast $(recordings); do echo "recording $name"; done ;;
