@@ -16,9 +16,8 @@ namespace taut::test
 class PcapWriter
 {
  public:
-    explicit PcapWriter(const std::string& path)
-        : pcap_(pcap_open_dead(DLT_EN10MB, 65535)),
-          dumper_(pcap_dump_open(pcap_.get(), path.c_str()))
+    explicit PcapWriter(const std::string& path, int link = DLT_EN10MB)
+        : pcap_(pcap_open_dead(link, 65535)), dumper_(pcap_dump_open(pcap_.get(), path.c_str()))
     {
     }
 
@@ -53,17 +52,33 @@ class PcapWriter
         to.push_back(static_cast<std::uint8_t>(value & 255));
     }
 
+    /** What stands before the IP packet. */
+    std::vector<std::uint8_t> linkHeader() const
+    {
+        const int link = pcap_datalink(pcap_.get());
+        if (link == DLT_RAW) return {};
+        if (link == DLT_NULL) return {2, 0, 0, 0};
+        if (link == DLT_LINUX_SLL2)
+        {
+            std::vector<std::uint8_t> header{8, 0};
+            header.resize(20);
+            return header;
+        }
+        std::vector<std::uint8_t> header(link == DLT_LINUX_SLL ? 14 : 12, 2);
+        for (int i = 0; i < vlan_tags; i++)
+        {
+            put16(header, 0x8100);
+            put16(header, 7);
+        }
+        put16(header, 0x0800);
+        return header;
+    }
+
     void writeFragment(
         Time t, const std::vector<std::uint8_t>& udp, std::size_t at, std::size_t piece)
     {
         const std::size_t size = std::min(piece, udp.size() - at);
-        std::vector<std::uint8_t> frame(12, 0x02);
-        for (int i = 0; i < vlan_tags; i++)
-        {
-            put16(frame, 0x8100);
-            put16(frame, 7);
-        }
-        put16(frame, 0x0800);
+        std::vector<std::uint8_t> frame = linkHeader();
         put16(frame, 0x4500);
         put16(frame, static_cast<unsigned>(20 + size));
         put16(frame, id_);

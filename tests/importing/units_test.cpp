@@ -33,7 +33,7 @@ class GivenSource : public ImportSource
 std::vector<ImportedItem> samples(
     double rest, double seconds, double accel_unit, double gyro_unit, double bias = 0.002)
 {
-    std::vector<ImportedItem> items;
+    std::vector<ImportedItem> items{Scan{}};
     for (int i = 0; i < 100 * seconds; i++)
     {
         const double t = std::max(0.0, 0.01 * i - rest);
@@ -58,7 +58,7 @@ Outcome check(std::vector<ImportedItem> items, const ImportOptions& options = {}
 {
     Outcome outcome;
     CheckedSource source(
-        std::make_unique<GivenSource>(std::move(items)), options, outcome.warnings.sink());
+        "given", std::make_unique<GivenSource>(std::move(items)), options, outcome.warnings.sink());
     while (const auto item = source.next())
         if (const auto* sample = std::get_if<ImuSample>(&*item)) outcome.imu.push_back(*sample);
     outcome.findings = source.findings();
@@ -112,17 +112,24 @@ TEST(TheUnitsOfAnImu, ThatAreNoneGiveAWarning)
 TEST(TheUnitsOfAnImu, AreNotJudgedByOneOutlier)
 {
     auto items = samples(0, 4, 1, 1);
-    std::get<ImuSample>(items[33]).gyro.x() = 200;
+    std::get<ImuSample>(items[34]).gyro.x() = 200;
     const Outcome o = check(items);
     EXPECT_NEAR(o.imu[0].gyro.x(), 0.002, 1e-9);
     EXPECT_EQ(o.warnings.count("imu_units"), 1U);
 }
 
+TEST(ARecordingOfAnImuAlone, IsRefused)
+{
+    auto items = samples(0, 3, 1, 1);
+    items.erase(items.begin());
+    EXPECT_THROW(check(items), std::runtime_error);
+}
+
 TEST(AnImportedSample, ThatGoesBackOrIsNotFiniteIsLeftOut)
 {
     auto items = samples(0, 3, 1, 1);
-    std::get<ImuSample>(items[20]).t = std::get<ImuSample>(items[19]).t;
-    std::get<ImuSample>(items[30]).accel.x() = std::nan("");
+    std::get<ImuSample>(items[21]).t = std::get<ImuSample>(items[20]).t;
+    std::get<ImuSample>(items[31]).accel.x() = std::nan("");
     Scan scan;
     scan.stamp = 7;
     items.insert(items.begin() + 100, {scan, scan});

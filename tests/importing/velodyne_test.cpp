@@ -98,6 +98,47 @@ TEST_F(AVelodyneCapture, IsStampedByTheSensorInTheHourOfTheCaptureOrByTheCapture
             toSeconds(by_capture.packet_scans[i].stamp - all.packet_scans[i].stamp), 0.080, 2e-6);
 }
 
+TEST_F(AVelodyneCapture, IsReadFromEveryLink)
+{
+    const auto sent = packets(Model::Vlp16, kStart, 90);
+    for (const int link : {DLT_EN10MB, DLT_RAW, DLT_NULL, DLT_LINUX_SLL, DLT_LINUX_SLL2})
+    {
+        {
+            PcapWriter pcap(path_, link);
+            for (const auto& packet : sent) pcap.write(kStart, 2368, packet);
+        }
+        EXPECT_EQ(importAll(path_).packet_scans.size(), 2U) << link;
+    }
+    {
+        PcapWriter pcap(path_, DLT_IEEE802_11);
+    }
+    EXPECT_THAT(importAll(path_).failure, HasSubstr("from a link that is not known here"));
+}
+
+TEST_F(AVelodyneCapture, OfDualReturnsIsCutAndCountedLikewise)
+{
+    // Pairs of blocks share their azimuth; a packet holds half the time.
+    auto sent = packets(Model::Vlp16, kStart, 160);
+    for (std::size_t i = 0; i < sent.size(); i++)
+    {
+        sent[i][velodyne::kPacketBytes - 2] = 0x39;
+        for (std::size_t block = 0; block < 12; block++)
+        {
+            const auto azimuth = (i * 240 + block / 2 * 40) % 36000;
+            sent[i][block * 100 + 2] = static_cast<std::uint8_t>(azimuth & 255);
+            sent[i][block * 100 + 3] = static_cast<std::uint8_t>(azimuth >> 8);
+        }
+        const auto microseconds = static_cast<std::uint32_t>(i * 663552 / 1000);
+        for (std::size_t k = 0; k < 4; k++)
+            sent[i][1200 + k] = static_cast<std::uint8_t>(microseconds >> (8 * k) & 255);
+    }
+    write(sent);
+    const Imported all = importAll(path_);
+    EXPECT_EQ(all.packet_scans.size(), 2U);
+    EXPECT_THAT(all.findings, testing::Contains(HasSubstr("dual return: 160 packets")));
+    EXPECT_THAT(all.findings, testing::Not(testing::Contains(HasSubstr("missing"))));
+}
+
 TEST_F(AVelodyneCapture, OfTwoSensorsKeepsTheFirstAndSaysSo)
 {
     const auto sent = packets(Model::Vlp16, kStart, 160);

@@ -1,5 +1,6 @@
 #include "CheckedSource.h"
 
+#include <stdexcept>
 #include <utility>
 
 namespace taut
@@ -18,8 +19,9 @@ std::string line(
 }  // namespace
 
 CheckedSource::CheckedSource(
-    std::unique_ptr<ImportSource> source, const ImportOptions& options, WarningSink warn)
-    : source_(std::move(source)), options_(options), warn_(std::move(warn))
+    std::string path, std::unique_ptr<ImportSource> source, const ImportOptions& options,
+    WarningSink warn)
+    : path_(std::move(path)), source_(std::move(source)), options_(options), warn_(std::move(warn))
 {
 }
 
@@ -125,7 +127,9 @@ void CheckedSource::judge()
 /* What the first seconds could not tell, the whole recording may. */
 void CheckedSource::finish()
 {
-    if (std::exchange(finished_, true) || samples_ < kFewestSamples) return;
+    if (std::exchange(finished_, true)) return;
+    if (!last_scan_) throw std::runtime_error("no scan in '" + path_ + "' can be used");
+    if (samples_ < kFewestSamples) return;
     const ImuUnits all = judge_.units();
     const auto contradict = [this](
                                 const std::string& what, const std::string& taken,

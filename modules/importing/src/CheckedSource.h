@@ -11,16 +11,18 @@
 namespace taut
 {
 /** Stands before every source: judges the units of the IMU by its first 2 s and converts to m/s^2
- * and rad/s, and lets nothing pass that goes back in time or is not finite. Warnings:
- *   imu_units     values that fit no unit, or another one than the first seconds said
- *   imu_time      stamp of the IMU equal to or earlier than the one before (left out)
+ * and rad/s, and lets nothing pass that goes back in time or is not finite. Throws at the end if
+ * there was no scan. Warnings: imu_units     values that fit no unit, or another one than the first
+ * seconds said imu_time      stamp of the IMU equal to or earlier than the one before (left out)
  *   imu_invalid   values that are not finite (left out)
  *   scan_time     stamp of a scan equal to or earlier than the one before (left out) */
 class CheckedSource : public ImportSource
 {
  public:
+    /** `path` is for messages. */
     CheckedSource(
-        std::unique_ptr<ImportSource> source, const ImportOptions& options, WarningSink warn);
+        std::string path, std::unique_ptr<ImportSource> source, const ImportOptions& options,
+        WarningSink warn);
 
     std::optional<ImportedItem> next() override;
     double progress() const override { return source_->progress(); }
@@ -41,6 +43,7 @@ class CheckedSource : public ImportSource
     void finish();
     void warn(Time t, const std::string& kind, const std::string& text) const;
 
+    std::string path_;
     std::unique_ptr<ImportSource> source_;
     ImportOptions options_;
     WarningSink warn_;

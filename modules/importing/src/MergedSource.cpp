@@ -1,6 +1,5 @@
 #include "MergedSource.h"
 
-#include <stdexcept>
 #include <utility>
 
 namespace taut
@@ -45,7 +44,6 @@ std::vector<std::string> MergedSource::findings() const
 void MergedSource::checkEnd()
 {
     if (std::exchange(ended_, true)) return;
-    if (scans_ == 0) throw std::runtime_error("no scan in '" + path_ + "' can be used");
     if (streams_.next_sample && !any_sample_ && warn_)
         warn_({0, "no_imu", "no sample of an IMU in '" + path_ + "'"});
 }

@@ -20,8 +20,7 @@ struct SensorStreams
 };
 
 /** Brings the streams of two sensors into the order of time: a scan when it has ended, as a
- * recorder would. Throws at the end if there was no scan; warns ("no_imu") if there is an IMU
- * without samples. */
+ * recorder would. Warns ("no_imu") at the end if there is an IMU without samples. */
 class MergedSource : public ImportSource
 {
  public:

@@ -41,7 +41,7 @@ std::unique_ptr<ImportSource> openImportSource(
     {
         if (format.matches(recording))
             return std::make_unique<CheckedSource>(
-                format.open(recording, options, warn), options, warn);
+                path, format.open(recording, options, warn), options, warn);
         known += std::string(known.empty() ? "" : ", ") + format.name;
     }
     throw std::runtime_error("'" + path + "' is no recording that can be imported: " + known);
