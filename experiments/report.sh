@@ -33,7 +33,8 @@ table sweep-iterations sweep '.*' rate "2 4" "prior | peak rate [deg/s]" 13 "$mo
 select_runs sweep '.*' . | awk -f "$here/gain.awk" >"$tables/gain.md"
 select_runs sweep '.*' . | awk -v suffix=-trusting -f "$here/gain.awk" >"$tables/gain-trusting.md"
 select_runs cost '.*' - | awk -v modes="$modes" -f "$here/cost.awk" >"$tables/cost.md"
-echo "Commit $(git -C "$root" describe --always --dirty --abbrev=9), $(($(wc -l <"$all") - 1)) runs," \
+echo "Commit $(cat "$folder/commit"), $(($(wc -l <"$all") - 1)) runs," \
+  "$(awk -F, '$1 == "sweep" && !seen[$5]++ {n++} END {print n + 0}' "$all") seeds of the sweeps," \
   "$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -1)." >"$tables/origin.md"
 
 # Mean and deviation for the plots: prior axis level variant points sd ate sd

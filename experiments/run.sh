@@ -29,6 +29,7 @@ version=$(cat "$bin"/taut-{slam,simulate,evaluate} "$bin"/../lib/libtaut_*.so "$
   "$root"/experiments/{common,job}.sh | sha256sum | cut -c 1-12)
 export RESULTS=$out/$version/results
 mkdir -p "$RESULTS"
+[ -s "$out/$version/commit" ] || git -C "$root" describe --always --dirty --abbrev=9 >"$out/$version/commit" || true
 rm -rf "$out/$version"/work.*
 
 recordings() {
