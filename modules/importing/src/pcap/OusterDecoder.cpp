@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "PacketDecoder.h"
 #include "taut/importing/ouster/Decoder.h"
+#include "taut/importing/pcap/PacketDecoder.h"
 
 namespace taut
 {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "PacketDecoder.h"
 #include "taut/importing/ouster/Decoder.h"
+#include "taut/importing/pcap/PacketDecoder.h"
 
 namespace taut
 {

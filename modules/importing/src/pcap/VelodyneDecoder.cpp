@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "PacketDecoder.h"
 #include "VelodyneSweeps.h"
+#include "taut/importing/pcap/PacketDecoder.h"
 
 namespace taut
 {
