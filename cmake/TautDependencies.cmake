@@ -32,6 +32,12 @@ add_library(PCAP::PCAP INTERFACE IMPORTED)
 set_target_properties(PCAP::PCAP PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${PCAP_INCLUDE_DIR}"
                                             INTERFACE_LINK_LIBRARIES "${PCAP_LIBRARY}")
 find_package(embree 3 QUIET) # libembree-dev 3.13.5; optional: simulation
+# libmrpt-hwdrivers-dev 2.5.8, optional: drivers for rawlog-grabber (mrpt-apps), which the tests run
+find_package(mrpt-hwdrivers 2.5 QUIET)
+if(NOT mrpt-hwdrivers_FOUND)
+  message(STATUS "mrpt-hwdrivers (Debian: libmrpt-hwdrivers-dev) is absent: libtaut-grabber.so is not "
+                 "built (cmake/install-dependencies.sh --grabber installs it)")
+endif()
 
 # Strict warnings, on an interface target so that no directory forgets them.
 add_library(taut_options INTERFACE)

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that taut builds with; does nothing where they are there already.
+# With --grabber also MRPT's sensor drivers and rawlog-grabber, which pull in Qt and wxWidgets.
 set -euo pipefail
 packages=(
   g++ cmake ninja-build pkg-config
@@ -9,6 +10,7 @@ packages=(
   libembree-dev libpcap-dev
   libgtest-dev libgmock-dev libbenchmark-dev nlohmann-json3-dev libssl-dev gnuplot-nox
 )
+[ "${1:-}" != --grabber ] || packages+=(libmrpt-hwdrivers-dev mrpt-apps)
 missing=()
 for p in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$p" 2>/dev/null | grep -q 'install ok installed' || missing+=("$p")
