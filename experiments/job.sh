@@ -79,7 +79,7 @@ case $group in
     ;;
   cost)
     seed=$3 variants=$modes
-    log=$data/$case.rawlog truth=$data/$case options=(--to-time 20)
+    log=$data/$case.rawlog truth=$data/$case options=(--to-time 25)
     ;;
 esac
 for variant in $variants; do run "$variant"; done

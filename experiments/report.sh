@@ -27,8 +27,7 @@ for axis in "rate:peak rate [deg/s]" "speed:speed [m/s]"; do
 done
 table recordings-ate recording '.*' - 2 recording 8 "$modes $trusting"
 table recordings-rotation recording '.*' - 2 recording 10 "$modes $trusting"
-table ablations 'recording|sequence' '.*' - "1 2" "kind | name" 8 "$ablations"
-table sequences sequence '.*' - 2 scenario 8 "imu default"
+for kind in recording sequence; do table "ablations-$kind" $kind '.*' - 2 $kind 8 "$ablations"; done
 table sweep-iterations sweep '.*' rate "2 4" "prior | peak rate [deg/s]" 13 "$modes $trusting"
 select_runs sweep '.*' . | awk -f "$here/gain.awk" >"$tables/gain.md"
 select_runs sweep '.*' . | awk -v suffix=-trusting -f "$here/gain.awk" >"$tables/gain-trusting.md"
