@@ -41,6 +41,10 @@ std::shared_ptr<mrpt::obs::CObservation> ImportingSensor::give(const ImportedIte
 
 WarningSink ImportingSensor::warnings()
 {
-    return [this](const Warning& w) { logStr(mrpt::system::LVL_WARN, w.kind + ": " + w.text); };
+    return [this](const Warning& w)
+    {
+        warned_++;
+        logStr(mrpt::system::LVL_WARN, w.kind + ": " + w.text);
+    };
 }
 }  // namespace taut

@@ -25,14 +25,15 @@ class ImportingSensor : public mrpt::hwdrivers::CGenericSensor,
     /** Hands the item to rawlog-grabber, as RawlogWriter writes it. */
     std::shared_ptr<mrpt::obs::CObservation> give(const ImportedItem& item);
 
-    /** Prints warnings as rawlog-grabber prints its own. */
+    /** Prints warnings as rawlog-grabber prints its own, and counts them. */
     WarningSink warnings();
+    std::size_t warned() const { return warned_; }
 
     std::size_t scans() const { return scans_; }  //!< given
     std::size_t samples() const { return samples_; }
 
  private:
     RawlogWriterConfig config_;
-    std::size_t scans_ = 0, samples_ = 0;
+    std::size_t scans_ = 0, samples_ = 0, warned_ = 0;
 };
 }  // namespace taut

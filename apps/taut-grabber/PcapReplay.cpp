@@ -95,7 +95,8 @@ void PcapReplay::waitForWriting()
     if (left == 0)
         throw std::runtime_error(
             "end of '" + path_ + "': all of its " + std::to_string(scans()) + " scans and " +
-            std::to_string(samples()) + " IMU samples are written");
+            std::to_string(samples()) + " IMU samples are written" +
+            (warned() == 0 ? "" : ", but the warnings tell what of the capture could not be used"));
     if (left != waiting_for_)
     {
         waiting_for_ = left;

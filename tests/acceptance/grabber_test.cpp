@@ -147,6 +147,62 @@ TEST_F(RawlogGrabber, WritesEveryFrameAndSampleOfAnOuster)
     EXPECT_NEAR((trajectory[2].T_world_imu.p - trajectory[0].T_world_imu.p).norm(), 0.498, 0.01);
 }
 
+TEST_F(RawlogGrabber, SaysSoWhereTheCaptureIsCutOff)
+{
+    const fs::path pcap = dataFolder() / "pcap/vlp16_gps.pcap";
+    if (!fs::exists(pcap)) GTEST_SKIP() << "vlp16_gps.pcap is absent";
+    const std::string cut = folder_ / "cut.pcap";
+    fs::copy_file(pcap, cut);
+    fs::permissions(cut, fs::perms::owner_all);
+    fs::resize_file(cut, fs::file_size(cut) / 2);
+    run_ = grab(replayOf(cut, {{"speed", "0"}}));
+    EXPECT_THAT(run_.output, HasSubstr("pcap_truncated"));
+    EXPECT_THAT(run_.output, HasSubstr("the warnings tell what of the capture could not be used"));
+    read();
+    EXPECT_EQ(scans_.size(), 3U);
+}
+
+// What taut-info says of it is what it says of the same capture imported.
+TEST_F(RawlogGrabber, WritesWhatTautImportWrites)
+{
+    if (!replay("ouster_os1_128", {{"speed", "0"}}))
+        GTEST_SKIP() << "ouster_os1_128.pcap is absent";
+    const std::string imported = folder_ / "imported.log";
+    const fs::path pcap = dataFolder() / "pcap/ouster_os1_128.pcap";
+    ASSERT_EQ(runProgram(TAUT_IMPORT, pcap.string() + " -o " + imported).exit_code, 0);
+    RawlogConfig config;
+    config.path = imported;
+    RawlogSource source(config);
+    std::size_t scan = 0, sample = 0;
+    while (const auto measurement = source.next())
+    {
+        if (const auto* s = std::get_if<ImuSample>(&*measurement))
+        {
+            ASSERT_LT(sample, imu_.size());
+            EXPECT_EQ(s->t, imu_[sample].t);
+            EXPECT_EQ(s->accel, imu_[sample].accel);
+            EXPECT_EQ(s->gyro, imu_[sample++].gyro);
+            continue;
+        }
+        const auto& s = std::get<Scan>(*measurement);
+        ASSERT_LT(scan, scans_.size());
+        EXPECT_EQ(s.stamp, scans_[scan].stamp);
+        EXPECT_EQ(s.end, scans_[scan].end);
+        ASSERT_EQ(s.points.size(), scans_[scan].points.size());
+        for (std::size_t i = 0; i < s.points.size(); i++)
+        {
+            ASSERT_EQ(s.points[i].position, scans_[scan].points[i].position);
+            ASSERT_EQ(s.points[i].offset, scans_[scan].points[i].offset);
+        }
+        scan++;
+    }
+    EXPECT_EQ(scan, scans_.size());
+    EXPECT_EQ(sample, imu_.size());
+    const ProgramRun told = runProgram(TAUT_INFO, config_.path + " -q");
+    EXPECT_EQ(told.exit_code, runProgram(TAUT_INFO, imported + " -q").exit_code) << told.output;
+    EXPECT_THAT(told.exit_code, testing::AnyOf(0, 3)) << told.output;
+}
+
 TEST_F(RawlogGrabber, IsToldWhatIsWrongWithACapture)
 {
     EXPECT_THAT(
