@@ -1,5 +1,5 @@
 # A Markdown table of the error of undistorted points [mm] one-pass (imu), iterated and bridge; and the ratios, each taken
-# on one recording: mean, and range over the seeds. Reads lines of results (common.sh: head). Variable: suffix of the variants.
+# on one recording: mean, and range over the seeds. Reads lines of results (common.sh: head).
 BEGIN { FS = "," }
 
 $7 == "ok" {
@@ -23,9 +23,9 @@ END {
   for (i = 1; i <= n; i++) {
     split(key[i], part, SUBSEP)
     place = part[1] " | " part[2] " | " part[3]
-    imu = error[key[i], "imu" suffix]
-    iterated = error[key[i], "iterated" suffix]
-    bridge = error[key[i], "bridge" suffix]
+    imu = error[key[i], "imu"]
+    iterated = error[key[i], "iterated"]
+    bridge = error[key[i], "bridge"]
     if (!(imu > 0 && iterated > 0 && bridge > 0)) continue
     if (!(place in count)) order[++places] = place
     count[place]++

@@ -54,7 +54,7 @@ run() { # VARIANT
 axis=- level=0 seed=0 from=0 options=()
 case $group in
   sweep)
-    axis=$3 level=$4 seed=$5 from=$rest variants="$trusting $modes"
+    axis=$3 level=$4 seed=$5 from=$rest variants=$modes
     # What no degraded prior can make worse is left out.
     [ "$case" = good ] || variants=${variants/none rotation /}
     missing || exit 0
@@ -65,7 +65,7 @@ case $group in
     options=(-s "initialization.rest_duration=$rest" -s output.undistorted_points=true)
     ;;
   recording)
-    variants="$modes $trusting $ablations"
+    variants="$modes $ablations"
     log=$data/$case.rawlog truth=$data/$case
     if [ "$case" = hall_fast ]; then # the sample
       log=$root/rawlogs/$case.rawlog truth=$root/rawlogs/$case

@@ -3,9 +3,7 @@ set terminal svg size 760,440 background 'white' enhanced font 'sans,12'
 set key outside right
 set grid
 set logscale y
-shown = modes.' imu-trusting bridge-trusting'
-array color[8] = ['#999999', '#c9a227', '#1f5fa8', '#3aa6a0', '#e0301f', '#8e3d8e', '#1f5fa8', '#8e3d8e']
-array dash[8] = [1, 1, 1, 1, 1, 1, 2, 2]
+array color[6] = ['#999999', '#c9a227', '#1f5fa8', '#3aa6a0', '#e0301f', '#8e3d8e']
 noise = 20 # mm, of a range
 rows(prior, axis, mode) = sprintf("< awk '$1 == \"%s\" && $2 == \"%s\" && $4 == \"%s\"' plot.dat", prior, axis, mode)
 are_there(axis) = system(sprintf("awk '$1 == \"good\" && $2 == \"%s\"' plot.dat | wc -l", axis)) > 12
@@ -19,12 +17,12 @@ do for [axis in "rate speed"] {
     set style data yerrorlines
     set output 'results_'.axis.'_points.svg'
     set title 'Error of the undistorted points over the '.quantity.', industrial IMU'
-    plot for [i=1:8] rows('good', axis, word(shown, i)) using 3:5:6 lw 1.5 pt 7 ps 0.5 lc rgb color[i] dt dash[i] \
-           title word(shown, i), noise with lines lw 1 dt 3 lc rgb 'black' title 'range noise'
+    plot for [i=1:6] rows('good', axis, word(modes, i)) using 3:5:6 lw 1.5 pt 7 ps 0.5 lc rgb color[i] \
+           title word(modes, i), noise with lines lw 1 dt 3 lc rgb 'black' title 'range noise'
     set output 'results_'.axis.'_ate.svg'
     set title 'ATE over the '.quantity.', industrial IMU'
-    plot for [i=1:8] rows('good', axis, word(shown, i)) using 3:7:8 lw 1.5 pt 7 ps 0.5 lc rgb color[i] dt dash[i] \
-           title word(shown, i)
+    plot for [i=1:6] rows('good', axis, word(modes, i)) using 3:7:8 lw 1.5 pt 7 ps 0.5 lc rgb color[i] \
+           title word(modes, i)
   }
 }
 
@@ -39,11 +37,11 @@ if (system("awk '$2 == \"rate\" && $3 == 180' plot.dat | wc -l") > 12) {
   set xtics ('good' 1, '100 Hz' 2, 'consumer' 3, 'bias' 4, '5 ms late' 5, 'all' 6)
   set style data boxerrorbars
   set style fill solid 0.85 noborder
-  set boxwidth 0.18
+  set boxwidth 0.36
   set output 'results_priors_points.svg'
   set title 'Error of the undistorted points at 180 deg/s, by what is wrong with the prior'
-  compared = 'imu imu-trusting iterated iterated-trusting'
-  array tint[4] = ['#9db9d8', '#1f5fa8', '#f0a59e', '#e0301f']
-  plot for [i=1:4] at(180, word(compared, i)) using (place(strcol(1)) + (i - 2.5) * 0.2):5:6 lc rgb tint[i] \
+  compared = 'imu iterated'
+  array tint[2] = ['#1f5fa8', '#e0301f']
+  plot for [i=1:2] at(180, word(compared, i)) using (place(strcol(1)) + (i - 1.5) * 0.4):5:6 lc rgb tint[i] \
          title word(compared, i), noise with lines lw 1 dt 3 lc rgb 'black' title 'range noise'
 }

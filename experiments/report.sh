@@ -21,16 +21,15 @@ worse='bias|consumer|100hz|offset|all'
 for axis in "rate:peak rate [deg/s]" "speed:speed [m/s]"; do
   for score in points:11 ate:8; do
     name=${axis%%:*} unit=${axis#*:} column=${score#*:} what=${score%%:*}
-    table "$name-$what" sweep good "$name" 4 "$unit" "$column" "$modes $trusting"
-    table "worse-$name-$what" sweep "$worse" "$name" "2 4" "prior | $unit" "$column" "$modes $trusting"
+    table "$name-$what" sweep good "$name" 4 "$unit" "$column" "$modes"
+    table "worse-$name-$what" sweep "$worse" "$name" "2 4" "prior | $unit" "$column" "$modes"
   done
 done
-table recordings-ate recording '.*' - 2 recording 8 "$modes $trusting"
-table recordings-rotation recording '.*' - 2 recording 10 "$modes $trusting"
+table recordings-ate recording '.*' - 2 recording 8 "$modes"
+table recordings-rotation recording '.*' - 2 recording 10 "$modes"
 for kind in recording sequence; do table "ablations-$kind" $kind '.*' - 2 $kind 8 "$ablations"; done
-table sweep-iterations sweep '.*' rate "2 4" "prior | peak rate [deg/s]" 13 "$modes $trusting"
+table sweep-iterations sweep '.*' rate "2 4" "prior | peak rate [deg/s]" 13 "$modes"
 select_runs sweep '.*' . | awk -f "$here/gain.awk" >"$tables/gain.md"
-select_runs sweep '.*' . | awk -v suffix=-trusting -f "$here/gain.awk" >"$tables/gain-trusting.md"
 select_runs cost '.*' - | awk -v modes="$modes" -f "$here/cost.awk" >"$tables/cost.md"
 echo "Commit $(cat "$folder/commit"), $(($(wc -l <"$all") - 1)) runs," \
   "$(awk -F, '$1 == "sweep" && !seen[$5]++ {n++} END {print n + 0}' "$all") seeds of the sweeps," \
