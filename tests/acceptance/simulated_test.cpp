@@ -41,7 +41,7 @@ TEST_F(WalkWithFaults, IsFollowedToItsEndAndItsFaultsAreNamed)
     const ProgramRun run = slam(log_, out_, "-s initialization.rest_duration=3");
     EXPECT_EQ(run.exit_code, 3) << run.output;
     const auto metrics = nlohmann::json::parse(contentOf(out_ + "/metrics.json"));
-    for (const char* kind : {"imu_gap", "lidar_gap", "imu_time"})
+    for (const char* kind : {"imu_gap", "lidar_gap", "imu_duplicate"})
         EXPECT_TRUE(metrics["warnings"].contains(kind)) << kind;
     EXPECT_EQ(metrics["warnings"]["imu_gap"], 2) << "a gap, and the clocks that jump";
     const Trajectory truth = readTum(truth_), estimate = readTum(out_ + "/trajectory.tum");

@@ -15,6 +15,7 @@ namespace
 constexpr double kFits = 0.3;          // share of the rotation left over: the path may be believed
 constexpr double kFitsAtAll = 0.6;     // more is left over: nothing may be believed
 constexpr double kHardlyTurns = 0.05;  // [rad/s] RMS
+constexpr double kHardlyRadians = 5;   // [rad/s] RMS: scans would follow even rates in deg/s
 constexpr int kMostRounds = 4;
 constexpr double kSettledOffset = 1e-3;    // [s] change from round to round
 constexpr double kSettledRotation = 1e-2;  // [rad]
@@ -81,8 +82,9 @@ class Comparison
             const bool settled =
                 found && std::abs(found->clock_offset - offset) < kSettledOffset &&
                 logSO3(found->R_imu_lidar.transpose() * R).norm() < kSettledRotation;
-            if (settled) return found;
-            const bool doubtful = !found || found->unexplained > kFits;
+            const bool strange = rounds_ == 1 && rateOf(imu_) > kHardlyRadians;
+            if (settled && !strange) return found;
+            const bool doubtful = !found || found->unexplained > kFits || strange;
             const auto next = doubtful && rounds_ == 1 ? fromConstantVelocity() : found;
             if (!next) break;
             offset = next->clock_offset;
