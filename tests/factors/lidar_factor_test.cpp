@@ -58,7 +58,7 @@ class LidarFactorTest : public ::testing::Test
     LidarFactor factor(Executor& executor) const
     {
         LidarFactor f(features, noise, executor);
-        f.setCorrespondences(correspondences);
+        f.setCorrespondences(correspondences, pathOf(Undistortion::Bridge), predicted);
         return f;
     }
 
@@ -69,6 +69,7 @@ class LidarFactorTest : public ::testing::Test
     Features features;
     std::vector<Correspondence> correspondences;
     LidarNoiseConfig noise;
+    LidarFactor::PoseCovariance predicted = LidarFactor::PoseCovariance::Zero();
     Executor single{1};
 };
 
@@ -88,11 +89,13 @@ struct Linearised
 TEST_F(LidarFactorTest, GradientIsThatOfTheCost)
 {
     addPoints(700);
+    predicted.diagonal() << 1e-4, 2e-4, 3e-4, 1e-5, 2e-5, 3e-5;
     const LidarFactor lidar = factor(single);
     for (const Undistortion mode :
          {Undistortion::None, Undistortion::Imu, Undistortion::IteratedImu, Undistortion::Iterated,
           Undistortion::Bridge})
-        for (const Kernel kernel : {Kernel::None, Kernel::Huber, Kernel::Cauchy})
+        for (const Kernel kernel :
+             {Kernel::None, Kernel::Huber, Kernel::Cauchy, Kernel::GemanMcClure})
         {
             noise.kernel.kind = kernel;
             SweepPath path = pathOf(mode);
@@ -111,6 +114,45 @@ TEST_F(LidarFactorTest, GradientIsThatOfTheCost)
             const Eigen::VectorXd error = at.g - numeric.transpose();
             EXPECT_LT(error.norm(), 2e-3 * at.g.norm()) << nameOf(mode);
         }
+}
+
+TEST_F(LidarFactorTest, AnUncertainPredictionKeepsFarMatchesInPlay)
+{
+    addPoints(300);
+    noise.kernel = {Kernel::GemanMcClure, 3};
+    const SweepPath path = pathOf(Undistortion::Bridge);
+    const std::vector<Vector3d> world = factor(single).undistort(path);
+    int rows = 0, false_rows = 0;
+    for (std::size_t i = 0; i < world.size(); i++)
+    {
+        Correspondence& c = correspondences[i];
+        if (c.surface == Surface::None) continue;
+        const bool is_false = i % 4 == 0;  // by 15 sigmas
+        c.point = world[i] +
+                  (is_false ? 0.35 : 0.0) *
+                      (c.surface == Surface::Plane ? c.direction : c.direction.unitOrthogonal());
+        (is_false ? false_rows : rows) += c.surface == Surface::Plane ? 1 : 2;
+    }
+    EXPECT_NEAR(factor(single).fit(path, 1).weights, rows, 0.01 * false_rows);
+    predicted.topLeftCorner<3, 3>().setIdentity();
+    EXPECT_NEAR(factor(single).fit(path, 1).weights, rows + false_rows, 0.1 * false_rows);
+}
+
+TEST_F(LidarFactorTest, MostMatchesCannotBeOutliers)
+{
+    addPoints(300);
+    noise.kernel = {Kernel::GemanMcClure, 3};
+    const SweepPath path = pathOf(Undistortion::Bridge);
+    const std::vector<Vector3d> world = factor(single).undistort(path);
+    int rows = 0;
+    for (std::size_t i = 0; i < world.size(); i++)
+    {
+        Correspondence& c = correspondences[i];
+        c.surface = i % 7 == 3 ? Surface::None : Surface::Plane;
+        c.point = world[i] + 0.5 * c.direction;  // as after a prediction that nobody doubted
+        if (c.surface == Surface::Plane) rows++;
+    }
+    EXPECT_GT(factor(single).fit(path, 1).weights, 0.8 * rows);
 }
 
 TEST_F(LidarFactorTest, HessianIsThatOfTheCostWhereResidualsVanish)

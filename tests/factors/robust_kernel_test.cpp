@@ -39,13 +39,21 @@ TEST_P(AnyKernel, SmallResidualsAreSquaresAndLargeOnesCountNoMore)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Of, AnyKernel, ::testing::Values(Kernel::None, Kernel::Huber, Kernel::Cauchy));
+    Of, AnyKernel,
+    ::testing::Values(Kernel::None, Kernel::Huber, Kernel::Cauchy, Kernel::GemanMcClure));
 
 TEST(RobustKernel, AnOutlierOfACauchyKernelHardlyPulls)
 {
     const RobustKernel cauchy{Kernel::Cauchy, 3}, huber{Kernel::Huber, 3};
     EXPECT_LT(cauchy.weight(1e4), 1e-3);
     EXPECT_NEAR(huber.weight(1e4) * 100, 3, 1e-9);  // constant pull: scale
+}
+
+TEST(RobustKernel, ManyOutliersOfAGemanMcClureKernelPullLessThanOneGoodMatch)
+{
+    const RobustKernel kernel{Kernel::GemanMcClure, 3};
+    const double outlier = 24;  // sigmas: a stair's step, seen by a window that is thin
+    EXPECT_LT(100 * kernel.weight(outlier * outlier) * outlier, kernel.weight(1));
 }
 
 TEST(RobustKernel, ReadsItsConfiguration)

@@ -95,9 +95,10 @@ struct Instance
     {
         config.undistortion = mode;
         config.previous_state = previous;
-        lidar.setCorrespondences(scene().correspondences);
         path.emplace(mode, scene().imu, scene().prior.state, predicted());
         problem.emplace(scene().prior, scene().imu, lidar, *path, config);
+        lidar.setCorrespondences(
+            scene().correspondences, *path, problem->predictedPoseCovariance());
     }
 
     static NavState predicted() { return predict(scene().imu, scene().prior.state); }
@@ -218,6 +219,20 @@ TEST_P(AnyScanProblem, WithoutLidarTheOptimumIsThePrediction)
     EXPECT_LT(problem.cost(), 1e-12);
     EXPECT_LT(whitenedGradient(problem), 1e-6);
     EXPECT_EQ(problem.lidarInformation().norm(), 0);
+}
+
+TEST_P(AnyScanProblem, PredictedPoseCovarianceIsThatOfTheProblemWithoutLidar)
+{
+    instance.config.bias_time = 1e12;  // the absolute prior of the biases is not in the prediction
+    problem.useLidar(false);
+    problem.relinearize();
+    const NavState::Matrix covariance = problem.marginalInformation().inverse();
+    const LidarFactor::PoseCovariance found = problem.predictedPoseCovariance();
+    for (const auto& [at, row] : {std::pair(NavState::kPosition, 0), {NavState::kRotation, 3}})
+    {
+        const Matrix3d expected = covariance.block<3, 3>(at, at);
+        EXPECT_LT((found.block<3, 3>(row, row) - expected).norm(), 1e-3 * expected.norm());
+    }
 }
 
 TEST_P(AnyScanProblem, AllSolversReachTheSameOptimum)

@@ -290,11 +290,39 @@ TEST(MidpointPreintegrator, AGapInTheSamplesInflatesTheCovariance)
     };
     const auto complete = covariance();
     samples.erase(samples.begin() + 15, samples.begin() + 35);  // 42 ms
-    const auto with_gap = covariance();
-    EXPECT_GT(with_gap(8, 8), 10 * complete(8, 8));
-    EXPECT_GT(with_gap(3, 3), 10 * complete(3, 3));
-    // One standard deviation is what the unknown motion may do in the gap.
-    EXPECT_NEAR(std::sqrt(with_gap(8, 8)), preintegrator.config.gap_rate * 0.042, 0.005);
+    for (const double share : {1.0, 0.5})
+    {
+        preintegrator.config.gap_time = 0.042 / share;
+        const auto with_gap = covariance();
+        EXPECT_GT(with_gap(8, 8), 10 * complete(8, 8));
+        EXPECT_GT(with_gap(3, 3), 10 * complete(3, 3));
+        // One standard deviation is what the unknown motion may do in the gap.
+        const double turn = preintegrator.config.gap_rate * share * share * 0.042;
+        EXPECT_NEAR(std::sqrt(with_gap(8, 8)), turn, 0.1 * turn);
+    }
+}
+
+TEST(MidpointPreintegrator, AGapOverWhichTheRateChangedIsTheLessCertain)
+{
+    const auto turned = [](double change)
+    {
+        ImuSamples samples;
+        for (const Time t : {0, 10, 60, 70})
+        {
+            ImuSample s;
+            s.t = t * kMillisecond;
+            s.gyro = {0, 0, t > 30 ? change : 0};
+            s.accel = kGravityWorld;
+            samples.push_back(s);
+        }
+        MidpointPreintegrator preintegrator;
+        preintegrator.config.gyro_scale_error = 0;
+        const auto chain =
+            preintegrator.integrate(request(samples, NavState(), 0, 70 * kMillisecond));
+        return chain.covariance(8, 8);
+    };
+    // A Brownian bridge over 50 ms that starts and ends at what was measured.
+    EXPECT_NEAR(turned(2) - turned(0), square(2 * 0.05) / 12, 1e-6);
 }
 
 TEST(MidpointPreintegrator, AGapOfAWholeSweepLeavesEveryDirectionItsOwnUncertainty)

@@ -33,18 +33,41 @@ Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor, 2, 3> projection(const
     return P;
 }
 
-double variance(const Correspondence& c, const LidarNoiseConfig& noise, double balance)
+using PoseRow = Eigen::Matrix<double, 6, 1>;
+
+/** Derivative of n^T y by (p, theta) of the pose that takes x to y: dy = dp - R [x]^ dtheta. */
+PoseRow poseDerivative(const Vector3d& n, const Vector3d& x, const Pose& pose)
 {
-    return balance * balance * (noise.sigma * noise.sigma + c.sigma * c.sigma);
+    PoseRow J;
+    J << n, x.cross(pose.R.transpose() * n);
+    return J;
 }
 }  // namespace
+
+/** Noise of a residual and the kernel that judges it. */
+struct LidarFactor::Noise
+{
+    double variance;  //!< [m^2]
+    double widening;  //!< of the kernel's argument, at least 1
+    const RobustKernel& kernel;
+
+    double rho(double r2) const { return widening * kernel.rho(r2 / (widening * variance)); }
+    double weight(double r2) const { return kernel.weight(r2 / (widening * variance)); }
+};
+
+LidarFactor::Noise LidarFactor::noiseOf(std::size_t i, double balance) const
+{
+    const double sigma = correspondences_[i].sigma;
+    const double variance = balance * balance * (noise_.sigma * noise_.sigma + sigma * sigma);
+    return {variance, surprise_ * (1 + predicted_variance_[i] / variance), noise_.kernel};
+}
 
 /** Normal equations of the points between two nodes of the path, in the poses at both: 6 x 6 blocks
  * and 6 rows each. */
 struct LidarFactor::Interval
 {
     using Block = Eigen::Matrix<double, 6, 6>;
-    using Row = Eigen::Matrix<double, 6, 1>;
+    using Row = PoseRow;
     Block H_begin = Block::Zero(), H_both = Block::Zero(), H_end = Block::Zero();
     Row g_begin = Row::Zero(), g_end = Row::Zero();
     double cost = 0;
@@ -69,9 +92,41 @@ LidarFactor::LidarFactor(
 {
 }
 
-void LidarFactor::setCorrespondences(const std::vector<Correspondence>& correspondences)
+void LidarFactor::setCorrespondences(
+    const std::vector<Correspondence>& correspondences, const SweepPath& path,
+    const PoseCovariance& predicted)
 {
     correspondences_ = correspondences;
+    predicted_variance_.assign(correspondences.size(), 0);
+    const SampledPath poses = sampled(path);
+    for (std::size_t i = 0; i < correspondences.size(); i++)
+    {
+        if (correspondences[i].surface == Surface::None) continue;
+        const Vector3d x = features_.points[i].position.cast<double>();
+        const auto P = projection(correspondences[i]);
+        for (int k = 0; k < P.rows(); k++)
+        {
+            const PoseRow J = poseDerivative(P.row(k), x, poses.poseAt(timeOf(i)));
+            predicted_variance_[i] += J.dot(predicted * J) / static_cast<double>(P.rows());
+        }
+    }
+    surprise_ = surpriseOf(path);
+}
+
+double LidarFactor::surpriseOf(const SweepPath& path)
+{
+    surprise_ = 1;
+    std::vector<double> e2;
+    e2.reserve(correspondences_.size());
+    forResiduals(
+        path, 1,
+        [&](double r2, const Noise& noise, int rows)
+        { e2.push_back(r2 / (noise.widening * noise.variance * rows)); });
+    if (e2.empty()) return 1;
+    const auto middle = e2.begin() + static_cast<std::ptrdiff_t>(e2.size() / 2);
+    std::nth_element(e2.begin(), middle, e2.end());
+    constexpr double kMedianOfChi2 = 0.455;  // one degree of freedom
+    return std::max(1.0, *middle / kMedianOfChi2);
 }
 
 SampledPath LidarFactor::sampled(const SweepPath& path) const
@@ -104,23 +159,18 @@ LidarFactor::Interval LidarFactor::linearizeInterval(
         const Pose pose = poses.poseAt(timeOf(i));
         const Vector3d x = features_.points[i].position.cast<double>();
         const auto P = projection(c);
-        const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 2, 1> r = P * (pose * x - c.point);
+        const Vector3d d = pose * x - c.point;
+        double r2 = 0;
+        for (int k = 0; k < P.rows(); k++) r2 += square(P.row(k).dot(d));
 
-        const double s2 = variance(c, noise_, balance);
-        const double e2 = r.squaredNorm() / s2;
-        const double w = noise_.kernel.weight(e2) / s2;
-        out.cost += 0.5 * noise_.kernel.rho(e2);
+        const Noise noise = noiseOf(i, balance);
+        const double w = noise.weight(r2) / noise.variance;
+        out.cost += 0.5 * noise.rho(r2);
 
-        // dy = dp - R [x]^ dtheta
         const double share =
             static_cast<double>(timeOf(i) - begin) / static_cast<double>(kNodeSpacing);
-        for (int k = 0; k < r.size(); k++)
-        {
-            const Vector3d n = P.row(k);
-            Interval::Row J;
-            J << n, x.cross(pose.R.transpose() * n);
-            out.add(J, r[k], w, share);
-        }
+        for (int k = 0; k < P.rows(); k++)
+            out.add(poseDerivative(P.row(k), x, pose), P.row(k).dot(d), w, share);
     }
     return out;
 }
@@ -185,14 +235,15 @@ void LidarFactor::forResiduals(const SweepPath& path, double balance, const Body
         const double along = c.direction.dot(d);
         const double r2 =
             c.surface == Surface::Plane ? along * along : d.squaredNorm() - along * along;
-        body(r2 / variance(c, noise_, balance), c.surface == Surface::Plane ? 1 : 2);
+        body(r2, noiseOf(i, balance), c.surface == Surface::Plane ? 1 : 2);
     }
 }
 
 double LidarFactor::cost(const SweepPath& path, double balance) const
 {
     double sum = 0;
-    forResiduals(path, balance, [&](double e2, int) { sum += 0.5 * noise_.kernel.rho(e2); });
+    forResiduals(
+        path, balance, [&](double r2, const Noise& noise, int) { sum += 0.5 * noise.rho(r2); });
     return sum;
 }
 
@@ -201,11 +252,11 @@ LidarFit LidarFactor::fit(const SweepPath& path, double balance) const
     LidarFit f;
     forResiduals(
         path, balance,
-        [&](double e2, int rows)
+        [&](double r2, const Noise& noise, int rows)
         {
-            const double w = noise_.kernel.weight(e2);
+            const double w = noise.weight(r2);
             f.count++;
-            f.chi2 += w * e2;
+            f.chi2 += w * r2 / noise.variance;
             f.weights += w * rows;
         });
     return f;

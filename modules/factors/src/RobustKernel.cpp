@@ -13,6 +13,8 @@ double RobustKernel::rho(double e2) const
             return e2 <= c2 ? e2 : 2 * scale * std::sqrt(e2) - c2;
         case Kernel::Cauchy:
             return c2 * std::log1p(e2 / c2);
+        case Kernel::GemanMcClure:
+            return e2 / (1 + e2 / c2);
         case Kernel::None:
             break;
     }
@@ -28,6 +30,8 @@ double RobustKernel::weight(double e2) const
             return e2 <= c2 ? 1 : scale / std::sqrt(e2);
         case Kernel::Cauchy:
             return 1 / (1 + e2 / c2);
+        case Kernel::GemanMcClure:
+            return 1 / ((1 + e2 / c2) * (1 + e2 / c2));
         case Kernel::None:
             break;
     }
@@ -38,7 +42,10 @@ void RobustKernel::declare(ConfigSection& section)
 {
     section.choice<Kernel>(
         "kernel", kind,
-        {{"none", Kernel::None}, {"huber", Kernel::Huber}, {"cauchy", Kernel::Cauchy}},
+        {{"none", Kernel::None},
+         {"huber", Kernel::Huber},
+         {"cauchy", Kernel::Cauchy},
+         {"geman-mcclure", Kernel::GemanMcClure}},
         "robust kernel of the LiDAR residuals");
     section.key("kernel_scale", scale, kPositive, "sigmas, where the influence starts to fall");
 }

@@ -124,7 +124,7 @@ void Odometry::estimate(
         config_.map->match(queries, correspondences, executor_);
         watch.stage(result.times.match);
 
-        lidar.setCorrespondences(correspondences);
+        lidar.setCorrespondences(correspondences, path, problem.predictedPoseCovariance());
         result.correspondences = static_cast<int>(std::count_if(
             correspondences.begin(), correspondences.end(),
             [](const Correspondence& c) { return c.surface != Surface::None; }));

@@ -1,6 +1,8 @@
 #include "taut/odometry/ScanProblem.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <array>
 
 namespace taut
 {
@@ -24,13 +26,19 @@ ScanProblem::ScanProblem(
     previous_ = saved_previous_ = previous.state;
     current_ = saved_current_ = predict(imu, previous.state);
 
-    NavState::Matrix covariance = imuCovariance(imu);
-    if (!released())  // the previous state's uncertainty, carried through the residual
-    {
-        const NavState::Matrix F = linearizeImu(imu, previous_, current_).d_previous;
-        covariance += F * symmetricInverse(previous.information) * F.transpose();
-    }
-    imu_information_ = symmetricInverse(covariance);
+    // The previous state's uncertainty, carried through the residual.
+    const ImuResidual f = linearizeImu(imu, previous_, current_);
+    const NavState::Matrix of_imu = imuCovariance(imu);
+    const NavState::Matrix of_both =
+        of_imu + f.d_previous * symmetricInverse(previous.information) * f.d_previous.transpose();
+    imu_information_ = symmetricInverse(released() ? of_imu : of_both);
+
+    const NavState::Matrix to_current = f.d_current.inverse();
+    const NavState::Matrix predicted = to_current * of_both * to_current.transpose();
+    constexpr std::array<int, 2> parts{NavState::kPosition, NavState::kRotation};
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++)
+            predicted_.block<3, 3>(3 * i, 3 * j) = predicted.block<3, 3>(parts[i], parts[j]);
 }
 
 int ScanProblem::dimension() const

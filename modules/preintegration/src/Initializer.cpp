@@ -17,11 +17,6 @@ std::string format(const char* text, double a, double b)
     return buffer;
 }
 
-double square(double x)
-{
-    return x * x;
-}
-
 /** Joint covariance of (theta, ba) from a prior on both and the mean specific force
  * mean = R^T g + ba, known to sigma_mean. */
 Eigen::Matrix<double, 6, 6> tiltAndBiasCovariance(

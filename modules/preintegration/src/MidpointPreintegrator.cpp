@@ -47,8 +47,15 @@ StepNoise noiseOf(
     double accel2 = request.noise.accel * request.noise.accel + accel_scale * accel_scale * sweep;
     if (dt > config.gap)
     {
-        gyro2 += config.gap_rate * config.gap_rate * dt;
-        accel2 += config.gap_accel * config.gap_accel * dt;
+        // A smooth signal leaves the straight line between its ends with the square of time; one
+        // that wanders (a Brownian bridge) by the root of a twelfth of its change.
+        const double smooth = square(std::min(1.0, dt / config.gap_time));
+        const auto unknown = [&](double most, const Vector3d& change)
+        { return std::sqrt(square(most * smooth) + change.squaredNorm() / 12); };
+        const double rate = unknown(config.gap_rate, later.gyro - earlier.gyro);
+        const double accel = unknown(config.gap_accel, later.accel - earlier.accel);
+        gyro2 += rate * rate * dt;
+        accel2 += accel * accel * dt;
     }
     return {std::sqrt(gyro2), std::sqrt(accel2)};
 }
@@ -57,8 +64,9 @@ StepNoise noiseOf(
 void MidpointPreintegrator::configure(ConfigSection& section)
 {
     section.key("gap", config.gap, kPositive, "s, a longer interval between samples is a gap");
-    section.key("gap_rate", config.gap_rate, kNotNegative, "rad/s, unknown rate within a gap");
+    section.key("gap_rate", config.gap_rate, kNotNegative, "rad/s, unknown rate in a long gap");
     section.key("gap_accel", config.gap_accel, kNotNegative, "m/s^2, the same of acceleration");
+    section.key("gap_time", config.gap_time, kPositive, "s, from which a gap is long");
     section.key(
         "gyro_scale_error", config.gyro_scale_error, kNotNegative, "share of the measured rate");
     section.key(

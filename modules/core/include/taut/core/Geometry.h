@@ -11,6 +11,11 @@ namespace taut
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+inline double square(double x)
+{
+    return x * x;
+}
+
 /** The skew-symmetric matrix of v: hat(v) w = v x w. */
 Matrix3d hat(const Vector3d& v);
 

@@ -37,15 +37,23 @@ class LidarFactor
     /** Features sorted by time; both references are kept. */
     LidarFactor(const Features& features, const LidarNoiseConfig& noise, Executor& executor);
 
-    /** One a feature. */
-    void setCorrespondences(const std::vector<Correspondence>& correspondences);
+    /** Covariance of an error of (p, theta) of a pose, as NavState has them. */
+    using PoseCovariance = Eigen::Matrix<double, 6, 6>;
+
+    /** One a feature. A residual can be as large as the pose predicted for the scan's end is
+     * uncertain, without being an outlier: the kernel judges it by that and its noise together.
+     * Where the prediction is good, false matches are told by far smaller residuals. */
+    void setCorrespondences(
+        const std::vector<Correspondence>& correspondences, const SweepPath& path,
+        const PoseCovariance& predicted);
 
     /** Undistorted world positions of all features, in their order. */
     std::vector<Vector3d> undistort(const SweepPath& path) const;
 
     /** Adds to the 30 x 30 Hessian and gradient of (x_{k-1}, x_k); returns the cost,
-     * 1/2 sum rho(|r|^2 / (balance sigma)^2). The path's derivative is exact at nodes every few
-     * milliseconds and linear between them; the residuals are as exact as SampledPath. */
+     * 1/2 sum L rho(|r|^2 / (L s^2)), s = balance sigma, where L = 1 + (prediction's variance) /
+     * s^2 widens the kernel. The path's derivative is exact at nodes every few milliseconds and
+     * linear between them; the residuals are as exact as SampledPath. */
     double linearize(
         const SweepPath& path, double balance, ProblemMatrix& hessian,
         ProblemVector& gradient) const;
@@ -55,9 +63,12 @@ class LidarFactor
 
  private:
     struct Interval;
+    struct Noise;
     SampledPath sampled(const SweepPath& path) const;
     Interval linearizeInterval(const SampledPath& poses, double balance, Time begin) const;
     Time timeOf(std::size_t i) const { return features_.stamp + features_.points[i].offset; }
+    Noise noiseOf(std::size_t i, double balance) const;
+    double surpriseOf(const SweepPath& path);
 
     template <class Body>
     void forResiduals(const SweepPath& path, double balance, const Body& body) const;
@@ -66,5 +77,7 @@ class LidarFactor
     const LidarNoiseConfig& noise_;
     Executor& executor_;
     std::vector<Correspondence> correspondences_;
+    std::vector<double> predicted_variance_;  // [m^2] of each residual
+    double surprise_ = 1;                     // squared, of the median residual
 };
 }  // namespace taut

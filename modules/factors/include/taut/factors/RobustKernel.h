@@ -9,12 +9,13 @@ enum class Kernel
     None,
     Huber,
     Cauchy,
+    GemanMcClure,
 };
 
 /** Robust kernel rho of a squared whitened residual e2 = |r|^2 / sigma^2. */
 struct RobustKernel
 {
-    Kernel kind = Kernel::Cauchy;
+    Kernel kind = Kernel::GemanMcClure;
     double scale = 3.0;  //!< whitened residual from which the influence falls
 
     double rho(double e2) const;

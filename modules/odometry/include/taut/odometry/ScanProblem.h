@@ -35,6 +35,9 @@ class ScanProblem : public LeastSquaresProblem
     const NavState& previous() const { return previous_; }
     const NavState& current() const { return current_; }
 
+    /** Covariance of (p, theta) of x_k before the LiDAR is asked. */
+    LidarFactor::PoseCovariance predictedPoseCovariance() const { return predicted_; }
+
     /** Factor on the LiDAR noise. */
     void setBalance(double balance)
     {
@@ -71,6 +74,7 @@ class ScanProblem : public LeastSquaresProblem
     const EstimationConfig& config_;
     NavState previous_, current_, saved_previous_, saved_current_;
     NavState::Matrix imu_information_;
+    LidarFactor::PoseCovariance predicted_;
     ProblemMatrix hessian_, lidar_hessian_;  // of the last linearisation
     bool linearized_ = false;                // at the current estimate, noise and correspondences
     double balance_ = 1;

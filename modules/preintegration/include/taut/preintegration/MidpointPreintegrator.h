@@ -6,12 +6,14 @@ namespace taut
 {
 struct MidpointConfig
 {
-    /** Rates and accelerations that an IMU gap leaves unknown: within an interval between samples
-     * of more than `gap` seconds the motion may have differed by so much from the interpolated one.
-     */
+    /** An interval between samples of more than `gap` seconds is a gap: the motion in it may differ
+     * from the interpolated one. By how much grows with the square of its length, as a smooth signal
+     * leaves a straight line, up to `gap_rate` and `gap_accel` in one of `gap_time`; and with the
+     * change over the gap. */
     double gap = 0.03;       //!< [s]
     double gap_rate = 1.0;   //!< [rad/s]
     double gap_accel = 5.0;  //!< [m/s^2]
+    double gap_time = 1.0;   //!< [s]
     /** Errors that grow with the motion (scale factor, misalignment, samples too far apart),
      * correlated over a sweep: one standard deviation as a share of the measured value. */
     double gyro_scale_error = 0.002;
