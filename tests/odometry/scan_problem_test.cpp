@@ -144,6 +144,7 @@ TEST_P(AnyScanProblem, GradientIsThatOfTheCostInAnyChart)
     Random random(1);
     for (const double size : {0.0, 0.03, 0.2})
     {
+        problem.setAtRest(size == 0.03);
         problem.retract(randomStep(random, problem.dimension(), 0.02));
         const ProblemVector z = randomStep(random, problem.dimension(), size);
         const Eigen::VectorXd found = chartGradient(problem, z);
@@ -314,6 +315,23 @@ TEST(ScanProblem, APreviousStateHeldIsAsUncertainAsOneReleased)
     EXPECT_LT(
         disagreement(fixed.problem->marginalInformation(), released.problem->marginalInformation()),
         1e-5);
+}
+
+TEST(ScanProblem, ABodyAtRestIsKnownToBeWhereItWas)
+{
+    Instance instance(Undistortion::Bridge, PreviousState::Released);
+    ScanProblem& problem = *instance.problem;
+    problem.useLidar(false);
+    const auto positionInformation = [&](bool at_rest)
+    {
+        problem.setAtRest(at_rest);
+        problem.relinearize();
+        const auto at = NavState::kPosition;
+        return Matrix3d(problem.marginalInformation().block<3, 3>(at, at));
+    };
+    const Matrix3d gained = positionInformation(true) - positionInformation(false);
+    const Matrix3d expected = Matrix3d::Identity() / square(instance.config.rest_sway);
+    EXPECT_LT((gained - expected).norm(), 1e-6 * expected.norm());
 }
 
 TEST(ScanProblem, BalanceScalesTheLidarBlock)

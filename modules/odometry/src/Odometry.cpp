@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "taut/factors/SampledPath.h"
+#include "taut/odometry/weakDirections.h"
 
 namespace taut
 {
@@ -49,6 +50,9 @@ void Odometry::start(const Initialization& initialization, bool with_imu)
     previous_.information =
         initialization.estimate.covariance.ldlt().solve(NavState::Matrix::Identity());
     previous_rate_.setZero();
+    rest_end_ = initialization.at_rest
+                    ? previous_.state.t + fromSeconds(initialization.rest_duration)
+                    : previous_.state.t;
     noise_ = config_.imu_noise;
     if (config_.imu_noise_from_rest && initialization.at_rest)
     {
@@ -109,6 +113,7 @@ void Odometry::estimate(
     LidarFactor lidar(features, config_.lidar_noise, executor_);
     ScanProblem problem(previous_, motion, lidar, path, config);
     problem.useLidar(false);
+    problem.setAtRest(motion.end() <= rest_end_);
 
     std::vector<MapPoint> queries(features.points.size());
     std::vector<Correspondence> correspondences;
@@ -122,6 +127,7 @@ void Odometry::estimate(
                 world[j], features.points[j].kind,
                 (problem.current().T_world_imu.p - world[j]).normalized()};
         config_.map->match(queries, correspondences, executor_);
+        removeNormalErrors(queries, config.normal_error, correspondences);
         watch.stage(result.times.match);
 
         lidar.setCorrespondences(correspondences, path, problem.predictedPoseCovariance());

@@ -94,12 +94,28 @@ double ScanProblem::addBiasPrior(ProblemMatrix& H, ProblemVector& g) const
     return cost;
 }
 
+double ScanProblem::addRest(ProblemMatrix& H, ProblemVector& g) const
+{
+    const double w = 1 / square(config_.rest_sway);
+    const int row = dimension() - kN + NavState::kPosition;
+    H.diagonal().segment<3>(row).array() += w;
+    g.segment<3>(row) += w * current_.T_world_imu.p;
+    return 0.5 * w * current_.T_world_imu.p.squaredNorm();
+}
+
+double ScanProblem::addAllButLidar(ProblemMatrix& H, ProblemVector& g) const
+{
+    double cost = addImu(H, g) + addBiasPrior(H, g);
+    if (released()) cost += addPrior(H, g);
+    if (at_rest_) cost += addRest(H, g);
+    return cost;
+}
+
 double ScanProblem::linearize(ProblemMatrix& hessian, ProblemVector& gradient)
 {
     hessian.setZero(dimension(), dimension());
     gradient.setZero(dimension());
-    double cost = addImu(hessian, gradient) + addBiasPrior(hessian, gradient);
-    if (released()) cost += addPrior(hessian, gradient);
+    double cost = addAllButLidar(hessian, gradient);
 
     lidar_hessian_.setZero(2 * kN, 2 * kN);
     ProblemVector lidar_gradient = ProblemVector::Zero(2 * kN);
@@ -123,8 +139,7 @@ double ScanProblem::cost()
 {
     ProblemMatrix H = ProblemMatrix::Zero(dimension(), dimension());
     ProblemVector g = ProblemVector::Zero(dimension());
-    double sum = addImu(H, g) + addBiasPrior(H, g);
-    if (released()) sum += addPrior(H, g);
+    const double sum = addAllButLidar(H, g);
     return use_lidar_ ? sum + lidar_.cost(path_, balance_) : sum;
 }
 

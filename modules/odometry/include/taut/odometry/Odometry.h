@@ -71,6 +71,7 @@ class Odometry
     ImuNoise noise_;
     bool with_imu_ = true, started_ = false;
     NavPrior previous_;
+    Time rest_end_ = 0;  //!< the body does not move before
     Vector3d previous_rate_ = Vector3d::Zero();
 };
 }  // namespace taut

@@ -37,6 +37,10 @@ struct EstimationConfig
     double gyro_bias_sigma = 0.02;  //!< [rad/s]
     double bias_time = 30.0;        //!< [s]
 
+    double rest_sway = 0.02;  //!< [m] that the body is away from the origin while it rests there
+    /** [rad] by which normals of the map may be wrong: see removeNormalErrors(). */
+    double normal_error = 0.05;
+
     // Bounds of one step.
     double max_step_position = 1.0;  //!< [m]
     double max_step_velocity = 5.0;  //!< [m/s]

@@ -14,8 +14,9 @@ struct NavPrior
     NavState::Matrix information = NavState::Matrix::Identity();
 };
 
-/** The cost of one scan (paper, equation 17): IMU factor, LiDAR factors, absolute bias prior and,
- * where the previous state is released, its prior. Unknowns: (x_{k-1}, x_k), or x_k alone. */
+/** The cost of one scan (paper, equation 17): IMU factor, LiDAR factors, absolute bias prior,
+ * the origin while the body rests there and, where the previous state is released, its prior.
+ * Unknowns: (x_{k-1}, x_k), or x_k alone. */
 class ScanProblem : public LeastSquaresProblem
 {
  public:
@@ -44,6 +45,12 @@ class ScanProblem : public LeastSquaresProblem
         balance_ = balance;
         linearized_ = false;
     }
+    /** The body is known to rest, at the origin, at t_k. */
+    void setAtRest(bool at_rest)
+    {
+        at_rest_ = at_rest;
+        linearized_ = false;
+    }
     /** Without LiDAR the problem is prediction and prior alone. */
     void useLidar(bool use)
     {
@@ -66,6 +73,8 @@ class ScanProblem : public LeastSquaresProblem
     double addPrior(ProblemMatrix& H, ProblemVector& g) const;
     double addImu(ProblemMatrix& H, ProblemVector& g) const;
     double addBiasPrior(ProblemMatrix& H, ProblemVector& g) const;
+    double addRest(ProblemMatrix& H, ProblemVector& g) const;
+    double addAllButLidar(ProblemMatrix& H, ProblemVector& g) const;
 
     const NavPrior& prior_;
     const PreintegratedImu& imu_;
@@ -78,6 +87,6 @@ class ScanProblem : public LeastSquaresProblem
     ProblemMatrix hessian_, lidar_hessian_;  // of the last linearisation
     bool linearized_ = false;                // at the current estimate, noise and correspondences
     double balance_ = 1;
-    bool use_lidar_ = true;
+    bool use_lidar_ = true, at_rest_ = false;
 };
 }  // namespace taut
