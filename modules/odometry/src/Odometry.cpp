@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "taut/factors/SampledPath.h"
-#include "taut/odometry/weakDirections.h"
 
 namespace taut
 {
@@ -127,7 +126,6 @@ void Odometry::estimate(
                 world[j], features.points[j].kind,
                 (problem.current().T_world_imu.p - world[j]).normalized()};
         config_.map->match(queries, correspondences, executor_);
-        removeNormalErrors(queries, config.normal_error, correspondences);
         watch.stage(result.times.match);
 
         lidar.setCorrespondences(correspondences, path, problem.predictedPoseCovariance());

@@ -38,8 +38,6 @@ struct EstimationConfig
     double bias_time = 30.0;        //!< [s]
 
     double rest_sway = 0.02;  //!< [m] that the body is away from the origin while it rests there
-    /** [rad] by which normals of the map may be wrong: see removeNormalErrors(). */
-    double normal_error = 0.05;
 
     // Bounds of one step.
     double max_step_position = 1.0;  //!< [m]
