@@ -1,18 +1,63 @@
 #include "taut/core/Parallel.h"
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
 
 namespace taut
 {
+namespace
+{
+using Body = std::function<void(std::size_t, std::size_t, std::size_t)>;
+
+/** One call of forChunks(). A thread that wakes late finds it done and touches nothing: nobody
+ * waits for threads, only for chunks. */
+struct Job
+{
+    Job(std::size_t job_size, std::size_t chunk, const Body& job_body)
+        : size(job_size),
+          chunk_size(chunk),
+          unfinished(Executor::chunks(size, chunk)),
+          body(job_body)
+    {
+    }
+
+    /** True if this thread finished the last chunk. */
+    bool work()
+    {
+        std::size_t finished = 0;
+        for (std::size_t c = next++; c * chunk_size < size; c = next++)
+        {
+            const std::size_t begin = c * chunk_size;
+            try
+            {
+                body(c, begin, std::min(begin + chunk_size, size));
+            }
+            catch (...)
+            {
+                const std::lock_guard<std::mutex> lock(mutex);
+                if (!error) error = std::current_exception();
+            }
+            finished++;
+        }
+        return finished > 0 && unfinished.fetch_sub(finished) == finished;
+    }
+
+    const std::size_t size, chunk_size;
+    std::atomic<std::size_t> next{0}, unfinished;
+    const Body& body;  // alive as long as there are unfinished chunks
+    std::mutex mutex;
+    std::exception_ptr error;
+};
+}  // namespace
+
 struct Executor::Pool
 {
-    using Body = std::function<void(std::size_t, std::size_t, std::size_t)>;
-
     explicit Pool(int workers)
     {
         for (int i = 0; i < workers; i++) threads.emplace_back([this] { serve(); });
@@ -27,68 +72,43 @@ struct Executor::Pool
         for (auto& t : threads) t.join();
     }
 
-    void run(std::size_t n, std::size_t chunk, const Body& b)
+    void run(std::size_t size, std::size_t chunk_size, const Body& body)
     {
+        const auto mine = std::make_shared<Job>(size, chunk_size, body);
         {
             const std::lock_guard<std::mutex> lock(mutex);
-            size = n;
-            chunk_size = chunk;
-            body = &b;
-            next = 0;
-            error = nullptr;
-            busy = threads.size();
-            ++round;
+            job = mine;
         }
         wake.notify_all();
-        work();
-        std::unique_lock<std::mutex> lock(mutex);
-        done.wait(lock, [this] { return busy == 0; });
-        body = nullptr;
-        if (error) std::rethrow_exception(error);
+        if (!mine->work())
+        {
+            std::unique_lock<std::mutex> lock(mutex);
+            done.wait(lock, [&] { return mine->unfinished == 0; });
+        }
+        if (mine->error) std::rethrow_exception(mine->error);
     }
 
     void serve()
     {
-        std::size_t seen = 0;
+        std::shared_ptr<Job> last;
         for (;;)
         {
             {
                 std::unique_lock<std::mutex> lock(mutex);
-                wake.wait(lock, [&] { return stop || round != seen; });
+                wake.wait(lock, [&] { return stop || job != last; });
                 if (stop) return;
-                seen = round;
+                last = job;
             }
-            work();
+            if (!last->work()) continue;
             const std::lock_guard<std::mutex> lock(mutex);
-            if (--busy == 0) done.notify_one();
-        }
-    }
-
-    void work()
-    {
-        for (std::size_t c = next++; c * chunk_size < size; c = next++)
-        {
-            const std::size_t begin = c * chunk_size;
-            const std::size_t end = begin + chunk_size < size ? begin + chunk_size : size;
-            try
-            {
-                (*body)(c, begin, end);
-            }
-            catch (...)
-            {
-                const std::lock_guard<std::mutex> lock(mutex);
-                if (!error) error = std::current_exception();
-            }
+            done.notify_one();
         }
     }
 
     std::vector<std::thread> threads;
     std::mutex mutex;
     std::condition_variable wake, done;
-    const Body* body = nullptr;
-    std::size_t size = 0, chunk_size = 1, busy = 0, round = 0;
-    std::atomic<std::size_t> next{0};
-    std::exception_ptr error;
+    std::shared_ptr<Job> job;  //!< the last one
     bool stop = false;
 };
 
@@ -110,6 +130,6 @@ void Executor::forChunks(
         return;
     }
     for (std::size_t c = 0, begin = 0; begin < size; c++, begin += chunk_size)
-        body(c, begin, begin + chunk_size < size ? begin + chunk_size : size);
+        body(c, begin, std::min(begin + chunk_size, size));
 }
 }  // namespace taut

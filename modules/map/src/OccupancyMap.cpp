@@ -8,6 +8,8 @@ namespace taut
 {
 namespace
 {
+constexpr int kInsertionsPerPruning = 32;
+
 octomap::point3d toOctomap(const Vector3d& p)
 {
     return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
@@ -73,8 +75,11 @@ void OccupancyMap::insert(
              std::to_string(finite - cloud.size()) + " points left out: too far from the origin"});
 
     tree_->insertPointCloud(
-        cloud, toOctomap(origin), config_.max_range, /*lazy_eval=*/false, /*discretize=*/true);
-    while (tree_->size() > static_cast<std::size_t>(config_.max_nodes))
+        cloud, toOctomap(origin), config_.max_range, /*lazy_eval=*/true, /*discretize=*/true);
+    inserted_++;
+    const auto most = static_cast<std::size_t>(config_.max_nodes);
+    if (inserted_ % kInsertionsPerPruning == 0 || tree_->size() > most) settle();
+    while (tree_->size() > most)
     {
         const std::size_t before = tree_->size();
         halveResolution();
@@ -84,6 +89,18 @@ void OccupancyMap::insert(
         if (warn) warn({t, "occupancy_coarser", text.str()});
         if (tree_->size() >= before) break;  // a handful of cells far apart
     }
+}
+
+void OccupancyMap::settle() const
+{
+    tree_->updateInnerOccupancy();
+    tree_->prune();
+}
+
+const octomap::OcTree& OccupancyMap::tree() const
+{
+    settle();
+    return *tree_;
 }
 
 void OccupancyMap::halveResolution()
@@ -113,19 +130,19 @@ void OccupancyMap::halveResolution()
 
 void OccupancyMap::writeOt(const std::string& path) const
 {
+    const octomap::OcTree& t = tree();
     writeFile(
         path,
         [&](std::ostream& file) -> std::ostream&
-        { return tree_->writeData(writeHeader(file, "# Octomap OcTree file", *tree_)); });
+        { return t.writeData(writeHeader(file, "# Octomap OcTree file", t)); });
 }
 
 void OccupancyMap::writeBt(const std::string& path) const
 {
+    const octomap::OcTree& t = tree();
     writeFile(
         path,
-        [&](std::ostream& file) -> std::ostream& {
-            return tree_->writeBinaryData(
-                writeHeader(file, "# Octomap OcTree binary file", *tree_));
-        });
+        [&](std::ostream& file) -> std::ostream&
+        { return t.writeBinaryData(writeHeader(file, "# Octomap OcTree binary file", t)); });
 }
 }  // namespace taut

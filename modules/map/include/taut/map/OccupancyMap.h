@@ -45,15 +45,18 @@ class OccupancyMap
     void writeOt(const std::string& path) const;
     void writeBt(const std::string& path) const;
 
-    const octomap::OcTree& tree() const { return *tree_; }
+    const octomap::OcTree& tree() const;
 
     /** Edge of a cell now [m]: that of the configuration times a power of two. */
     double resolution() const { return tree_->getResolution(); }
 
  private:
+    /** Inner nodes are brought up to date, and equal leaves merged, not after every insertion. */
+    void settle() const;
     void halveResolution();
 
     Config config_;
     std::unique_ptr<octomap::OcTree> tree_;
+    int inserted_ = 0;
 };
 }  // namespace taut
