@@ -58,7 +58,7 @@ class LidarFactorTest : public ::testing::Test
     LidarFactor factor(Executor& executor) const
     {
         LidarFactor f(features, noise, executor);
-        f.setCorrespondences(correspondences, pathOf(Undistortion::Bridge), predicted);
+        f.setCorrespondences(correspondences, pathOf(Undistortion::Bridge), predicted, 1);
         return f;
     }
 

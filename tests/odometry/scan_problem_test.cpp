@@ -98,7 +98,7 @@ struct Instance
         path.emplace(mode, scene().imu, scene().prior.state, predicted());
         problem.emplace(scene().prior, scene().imu, lidar, *path, config);
         lidar.setCorrespondences(
-            scene().correspondences, *path, problem->predictedPoseCovariance());
+            scene().correspondences, *path, problem->predictedPoseCovariance(), 1);
     }
 
     static NavState predicted() { return predict(scene().imu, scene().prior.state); }

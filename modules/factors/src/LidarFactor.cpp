@@ -94,7 +94,7 @@ LidarFactor::LidarFactor(
 
 void LidarFactor::setCorrespondences(
     const std::vector<Correspondence>& correspondences, const SweepPath& path,
-    const PoseCovariance& predicted)
+    const PoseCovariance& predicted, double balance)
 {
     correspondences_ = correspondences;
     predicted_variance_.assign(correspondences.size(), 0);
@@ -110,16 +110,16 @@ void LidarFactor::setCorrespondences(
             predicted_variance_[i] += J.dot(predicted * J) / static_cast<double>(P.rows());
         }
     }
-    surprise_ = surpriseOf(path);
+    surprise_ = surpriseOf(path, balance);
 }
 
-double LidarFactor::surpriseOf(const SweepPath& path)
+double LidarFactor::surpriseOf(const SweepPath& path, double balance)
 {
     surprise_ = 1;
     std::vector<double> e2;
     e2.reserve(correspondences_.size());
     forResiduals(
-        path, 1,
+        path, balance,
         [&](double r2, const Noise& noise, int rows)
         { e2.push_back(r2 / (noise.widening * noise.variance * rows)); });
     if (e2.empty()) return 1;

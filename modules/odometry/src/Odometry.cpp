@@ -128,7 +128,8 @@ void Odometry::estimate(
         config_.map->match(queries, correspondences, executor_);
         watch.stage(result.times.match);
 
-        lidar.setCorrespondences(correspondences, path, problem.predictedPoseCovariance());
+        lidar.setCorrespondences(
+            correspondences, path, problem.predictedPoseCovariance(), balance);
         result.correspondences = static_cast<int>(std::count_if(
             correspondences.begin(), correspondences.end(),
             [](const Correspondence& c) { return c.surface != Surface::None; }));

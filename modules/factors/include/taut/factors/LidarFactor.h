@@ -45,7 +45,7 @@ class LidarFactor
      * Where the prediction is good, false matches are told by far smaller residuals. */
     void setCorrespondences(
         const std::vector<Correspondence>& correspondences, const SweepPath& path,
-        const PoseCovariance& predicted);
+        const PoseCovariance& predicted, double balance);
 
     /** Undistorted world positions of all features, in their order. */
     std::vector<Vector3d> undistort(const SweepPath& path) const;
@@ -68,7 +68,7 @@ class LidarFactor
     Interval linearizeInterval(const SampledPath& poses, double balance, Time begin) const;
     Time timeOf(std::size_t i) const { return features_.stamp + features_.points[i].offset; }
     Noise noiseOf(std::size_t i, double balance) const;
-    double surpriseOf(const SweepPath& path);
+    double surpriseOf(const SweepPath& path, double balance);
 
     template <class Body>
     void forResiduals(const SweepPath& path, double balance, const Body& body) const;
