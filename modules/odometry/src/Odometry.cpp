@@ -13,6 +13,10 @@ namespace taut
 {
 namespace
 {
+/** Share of the prediction's covariance that is left to explain residuals after each look-up of
+ * correspondences, since an estimate takes its place: the kernel closes step by step. */
+constexpr double kStillPredicted = 0.25;
+
 /** Adds the time since its last call to a stage. */
 class Stopwatch
 {
@@ -117,6 +121,7 @@ void Odometry::estimate(
     std::vector<MapPoint> queries(features.points.size());
     std::vector<Correspondence> correspondences;
     double balance = config.inflation;
+    LidarFactor::PoseCovariance unexplained = problem.predictedPoseCovariance();
     for (int i = 0; i < config.max_iterations && !config_.map->empty(); i++)
     {
         Stopwatch watch;
@@ -128,8 +133,8 @@ void Odometry::estimate(
         config_.map->match(queries, correspondences, executor_);
         watch.stage(result.times.match);
 
-        lidar.setCorrespondences(
-            correspondences, path, problem.predictedPoseCovariance(), balance);
+        lidar.setCorrespondences(correspondences, path, unexplained, balance);
+        unexplained *= kStillPredicted;
         result.correspondences = static_cast<int>(std::count_if(
             correspondences.begin(), correspondences.end(),
             [](const Correspondence& c) { return c.surface != Surface::None; }));
