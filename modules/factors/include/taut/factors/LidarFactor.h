@@ -52,8 +52,9 @@ class LidarFactor
 
     /** Adds to the 30 x 30 Hessian and gradient of (x_{k-1}, x_k); returns the cost,
      * 1/2 sum L rho(|r|^2 / (L s^2)), s = balance sigma, where L = 1 + (prediction's variance) /
-     * s^2 widens the kernel. The path's derivative is exact at nodes every few milliseconds and
-     * linear between them; the residuals are as exact as SampledPath. */
+     * s^2 widens the kernel, further where the median residual is larger than that. The path's
+     * derivative is exact at nodes every few milliseconds and linear between them; the residuals
+     * are as exact as SampledPath. */
     double linearize(
         const SweepPath& path, double balance, ProblemMatrix& hessian,
         ProblemVector& gradient) const;

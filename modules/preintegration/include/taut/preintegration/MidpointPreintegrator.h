@@ -7,9 +7,9 @@ namespace taut
 struct MidpointConfig
 {
     /** An interval between samples of more than `gap` seconds is a gap: the motion in it may differ
-     * from the interpolated one. By how much grows with the square of its length, as a smooth signal
-     * leaves a straight line, up to `gap_rate` and `gap_accel` in one of `gap_time`; and with the
-     * change over the gap. */
+     * from the interpolated one. By how much grows with the square of its length, as a smooth
+     * signal leaves a straight line, up to `gap_rate` and `gap_accel` in one of `gap_time`; and
+     * with the change over the gap. */
     double gap = 0.03;       //!< [s]
     double gap_rate = 1.0;   //!< [rad/s]
     double gap_accel = 5.0;  //!< [m/s^2]
