@@ -55,26 +55,29 @@ bool OctreeMap::isStale(const Window& window) const
     return window.checked == 0 || insertions_ - window.checked > window.patience;
 }
 
-void OctreeMap::refresh(Window& window, int level) const
+void OctreeMap::locate(Window& window, int level) const
 {
-    const unsigned depth = depthOf(level);
     const auto step = static_cast<std::uint16_t>(1u << level);
-    std::array<const StatisticsNode*, 8> nodes;
-    double count = 0;
+    std::array<octomap::OcTreeKey, 8> keys;
     for (unsigned i = 0; i < 8; i++)
-    {
-        const octomap::OcTreeKey key(
+        keys[i] = octomap::OcTreeKey(
             static_cast<std::uint16_t>(window.corner[0] - (i & 1 ? step : 0)),
             static_cast<std::uint16_t>(window.corner[1] - (i & 2 ? step : 0)),
             static_cast<std::uint16_t>(window.corner[2] - (i & 4 ? step : 0)));
-        nodes[i] = tree_->find(key, depth, window.places[i]);
-        if (nodes[i] != nullptr) count += nodes[i]->statistics().count;
-    }
+    tree_->approach(keys.data(), 8, depthOf(level), window.places.data());
+}
+
+void OctreeMap::refresh(Window& window, int level) const
+{
+    const unsigned depth = depthOf(level);
+    double count = 0;
+    for (const StatisticsTree::Place& place : window.places)
+        if (place.depth == depth) count += place.node->statistics().count;
     if (count >= config.min_points && count >= kGrowth * window.count)
     {
         PointStatistics sum;
-        for (const StatisticsNode* node : nodes)
-            if (node != nullptr) sum.add(node->statistics());
+        for (const StatisticsTree::Place& place : window.places)
+            if (place.depth == depth) sum.add(place.node->statistics());
         const double min_width = config.min_spread * config.leaf_size * (1 << level);
         window.min_width2 = min_width * min_width;
         compute(window, sum);
@@ -172,7 +175,6 @@ Correspondence OctreeMap::lineAt(const Vector3d& query, const Window& window) co
 void OctreeMap::findWindows(const std::vector<MapPoint>& queries, int l, Executor& executor) const
 {
     Level& level = levels_[static_cast<std::size_t>(l)];
-    std::vector<std::uint32_t> stale;
     for (std::size_t i = 0; i < queries.size(); i++)
     {
         if (!searches_[i].active) continue;
@@ -187,16 +189,23 @@ void OctreeMap::findWindows(const std::vector<MapPoint>& queries, int l, Executo
             last = {corner, windowAt(level, corner)};
         searches_[i].window = last.window;
         searches_[i].last_level = static_cast<std::int8_t>(l);
-        Window& window = level.windows[last.window];
+        level.prefetch(last.window);
+    }
+    std::vector<std::uint32_t> stale;
+    for (const Search& search : searches_)
+    {
+        if (!search.active) continue;
+        Window& window = level.windows[search.window];
         if (!isStale(window)) continue;
         window.age = window.checked == 0 ? 0 : insertions_ - window.checked;
         window.checked = insertions_;
-        stale.push_back(last.window);
+        stale.push_back(search.window);
     }
     executor.forChunks(
-        stale.size(), 64,
+        stale.size(), 32,
         [&](std::size_t, std::size_t begin, std::size_t end)
         {
+            for (std::size_t i = begin; i < end; i++) locate(level.windows[stale[i]], l);
             for (std::size_t i = begin; i < end; i++) refresh(level.windows[stale[i]], l);
         });
 }

@@ -97,25 +97,38 @@ void StatisticsTree::remove(const octomap::OcTreeKey& key, unsigned depth)
     if (!nodeHasChildren(root)) clear();
 }
 
-const StatisticsNode* StatisticsTree::find(
-    const octomap::OcTreeKey& key, unsigned depth, Place& place) const
+void StatisticsTree::approach(
+    const octomap::OcTreeKey* keys, unsigned count, unsigned depth, Place* places) const
 {
-    if (place.node == nullptr) place = {root, 0};
-    if (root == nullptr) return nullptr;
-    for (; place.depth < depth; place.depth++)
+    if (root == nullptr) return;
+    std::uint32_t on_the_way = 0;
+    for (unsigned i = 0; i < count; i++)
     {
-        const unsigned child =
-            octomap::computeChildIdx(key, static_cast<int>(tree_depth - place.depth - 1));
-        if (!nodeChildExists(place.node, child)) return nullptr;
-        place.node = getNodeChild(place.node, child);
+        if (places[i].node == nullptr) places[i] = {root, 0};
+        if (places[i].depth < depth) on_the_way |= 1u << i;
     }
-    return place.node;
+    while (on_the_way != 0)
+        for (unsigned i = 0; i < count; i++)
+        {
+            if ((on_the_way & 1u << i) == 0) continue;
+            Place& place = places[i];
+            const unsigned child =
+                octomap::computeChildIdx(keys[i], static_cast<int>(tree_depth - place.depth - 1));
+            const bool exists = nodeChildExists(place.node, child);
+            if (exists)
+            {
+                place = {getNodeChild(place.node, child), place.depth + 1};
+                place.node->prefetch();
+            }
+            if (!exists || place.depth == depth) on_the_way &= ~(1u << i);
+        }
 }
 
 const StatisticsNode* StatisticsTree::find(const octomap::OcTreeKey& key, unsigned depth) const
 {
     Place place;
-    return find(key, depth, place);
+    approach(&key, 1, depth, &place);
+    return place.depth == depth ? place.node : nullptr;
 }
 
 const StatisticsTree::Entry* StatisticsTree::childEnd(

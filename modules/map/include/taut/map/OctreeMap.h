@@ -4,6 +4,7 @@
 #include <tsl/robin_set.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -89,6 +90,14 @@ class OctreeMap : public Map
         WindowIndex index;
         std::vector<Window> windows;
         std::vector<std::uint32_t> free;
+
+        /** Has what a search reads of a window at hand when it is needed soon. */
+        void prefetch(std::uint32_t window) const
+        {
+            const char* first = reinterpret_cast<const char*>(&windows[window]);
+            for (std::size_t at = 0; at < offsetof(Window, corner); at += 64)
+                __builtin_prefetch(first + at);
+        }
     };
 
     /** The search of one query: from the largest window down. */
@@ -114,6 +123,7 @@ class OctreeMap : public Map
     std::uint32_t windowAt(Level& level, const std::array<std::uint16_t, 3>& corner) const;
     void remember(const octomap::OcTreeKey& leaf);
     bool isStale(const Window& window) const;
+    void locate(Window& window, int level) const;
     void refresh(Window& window, int level) const;
     void schedule(Window& window, double count) const;
     void compute(Window& window, const PointStatistics& statistics) const;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -50,6 +51,14 @@ class StatisticsNode : public octomap::OcTreeDataNode<PointStatistics>
     /** The child, made if it is not there. The tree must be told of new nodes. */
     StatisticsNode& makeChild(unsigned i, bool& is_new);
 
+    /** Have the memory of the node, or of what leads to its children, at hand when it is needed. */
+    void prefetch() const
+    {
+        __builtin_prefetch(this);
+        __builtin_prefetch(reinterpret_cast<const char*>(this + 1) - 1);
+    }
+    void prefetchChildren() const { __builtin_prefetch(children); }
+
     PointStatistics& statistics() { return value; }
     const PointStatistics& statistics() const { return value; }
 
@@ -76,8 +85,13 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
         unsigned depth = 0;  //!< of that node
     };
 
-    /** The node of a key at a depth, or null. `place` belongs to this key and depth. */
-    const StatisticsNode* find(const octomap::OcTreeKey& key, unsigned depth, Place& place) const;
+    /** Goes as far towards the nodes of at most 32 keys at a depth as they exist. All ways at once:
+     * each step waits for memory, and these waits overlap. A place belongs to one key and depth;
+     * a node that is there is at that depth. */
+    void approach(
+        const octomap::OcTreeKey* keys, unsigned count, unsigned depth, Place* places) const;
+
+    /** The node of a key at a depth, or null. */
     const StatisticsNode* find(const octomap::OcTreeKey& key, unsigned depth) const;
 
     /** Deletes the node of a key at a depth with all below it, and ancestors that become empty. */
@@ -107,8 +121,8 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
     /** A subtree whose nodes have statistics, and the entries that belong to it. */
     struct Subtree
     {
-        StatisticsNode* node;
-        const Entry *begin, *end;
+        StatisticsNode* node = nullptr;
+        const Entry *begin = nullptr, *end = nullptr;
         std::size_t created = 0;  //!< nodes
     };
     std::vector<Subtree> subtreesOf(const Entries& entries, unsigned depth);
@@ -160,14 +174,23 @@ PointStatistics StatisticsTree::fill(
     }
     else
     {
+        std::array<Subtree, 8> below;
+        std::size_t children = 0;
         while (begin != end)
         {
             const Entry* next = childEnd(begin, end, depth);
             bool is_new = false;
             StatisticsNode& child = node.makeChild(childOf(*begin, depth), is_new);
+            child.prefetch();
             created += is_new;
-            added.add(fill(child, depth + 1, begin, next, capacity, put, created));
+            below[children++] = {&child, begin, next};
             begin = next;
+        }
+        for (std::size_t i = 0; i < children; i++)
+        {
+            if (i + 1 < children) below[i + 1].node->prefetchChildren();
+            const Subtree& s = below[i];
+            added.add(fill(*s.node, depth + 1, s.begin, s.end, capacity, put, created));
         }
     }
     node.statistics().add(added);
