@@ -9,8 +9,8 @@ namespace taut
 {
 namespace
 {
-constexpr std::size_t kChunk = 8;             // intervals between nodes
-constexpr Duration kNodeSpacing = 2'500'000;  // [ns] between exact derivatives of the path
+constexpr std::size_t kChunk = 3;             // intervals between nodes
+constexpr Duration kNodeSpacing = 5'000'000;  // [ns] between exact derivatives of the path
 constexpr int kPathSize = 2 * NavState::kSize;
 
 /** Rows that project a difference on what the surface measures: n^T of a plane; two unit vectors
