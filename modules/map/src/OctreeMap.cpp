@@ -80,16 +80,28 @@ unsigned OctreeMap::blockDepth() const
 
 void OctreeMap::insert(const std::vector<MapPoint>& points, Executor& executor)
 {
+    const unsigned above_leaf = kTreeDepth - blockDepth();
+    std::vector<octomap::OcTreeKey> keys(points.size());
+    std::vector<char> inside(points.size());
+    executor.forChunks(
+        points.size(), 1024,
+        [&](std::size_t, std::size_t begin, std::size_t end)
+        {
+            for (std::size_t i = begin; i < end; i++)
+                inside[i] =
+                    points[i].position.allFinite() &&
+                    tree_->coordToKeyChecked(toOctomap(points[i].position - origin_), keys[i]);
+        });
     StatisticsTree::Entries entries;
     entries.reserve(points.size());
+    std::uint64_t last_block = ~std::uint64_t{0};
     for (std::uint32_t i = 0; i < points.size(); i++)
     {
-        octomap::OcTreeKey key;
-        if (!points[i].position.allFinite() ||
-            !tree_->coordToKeyChecked(toOctomap(points[i].position - origin_), key))
-            continue;
-        entries.push_back({StatisticsTree::wayTo(key), i});
-        remember(key);
+        if (!inside[i]) continue;
+        entries.push_back({StatisticsTree::wayTo(keys[i]), i});
+        const std::uint64_t block = entries.back().way >> 3 * above_leaf;
+        if (block != last_block) remember(keys[i]);
+        last_block = block;
     }
     tree_->add(
         std::move(entries), depthOf(config.scales - 1), config.leaf_capacity,

@@ -138,6 +138,19 @@ const StatisticsTree::Entry* StatisticsTree::childEnd(
     return std::find_if(begin, end, [&](const Entry& e) { return childOf(e, depth) != child; });
 }
 
+void StatisticsTree::sort(Entries& entries, Executor& executor)
+{
+    const auto before = [](const Entry& a, const Entry& b)
+    { return a.way != b.way ? a.way < b.way : a.index < b.index; };
+    const std::size_t half = (entries.size() + 1) / 2;
+    const auto at = [&](std::size_t i) { return entries.begin() + static_cast<std::ptrdiff_t>(i); };
+    executor.forChunks(
+        entries.size(), half,
+        [&](std::size_t, std::size_t begin, std::size_t end)
+        { std::sort(at(begin), at(end), before); });
+    std::inplace_merge(entries.begin(), at(half), entries.end(), before);
+}
+
 std::vector<StatisticsTree::Subtree> StatisticsTree::subtreesOf(
     const Entries& entries, unsigned depth)
 {

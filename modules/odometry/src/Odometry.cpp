@@ -213,13 +213,18 @@ void Odometry::insert(const Scan& scan, const SweepPath& path, ScanResult& resul
         [](const LidarPoint& a, const LidarPoint& b) { return a.offset < b.offset; });
     const SampledPath poses(path, scan.timeOf(*first), scan.timeOf(*last));
     std::vector<MapPoint> points(kept);
-    for (std::size_t i = 0; i < kept; i++)
-    {
-        const LidarPoint& p = scan.points[i * stride];
-        const Pose pose = poses.poseAt(scan.timeOf(p));
-        points[i].position = pose * Vector3d(p.position.cast<double>());
-        points[i].view = (pose.p - points[i].position).normalized();
-    }
+    executor_.forChunks(
+        kept, 1024,
+        [&](std::size_t, std::size_t chunk_begin, std::size_t chunk_end)
+        {
+            for (std::size_t i = chunk_begin; i < chunk_end; i++)
+            {
+                const LidarPoint& p = scan.points[i * stride];
+                const Pose pose = poses.poseAt(scan.timeOf(p));
+                points[i].position = pose * Vector3d(p.position.cast<double>());
+                points[i].view = (pose.p - points[i].position).normalized();
+            }
+        });
     config_.map->insert(points, executor_);
     result.points.resize(kept);
     for (std::size_t i = 0; i < kept; i++) result.points[i] = points[i].position;

@@ -125,6 +125,7 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
         const Entry *begin = nullptr, *end = nullptr;
         std::size_t created = 0;  //!< nodes
     };
+    static void sort(Entries& entries, Executor& executor);
     std::vector<Subtree> subtreesOf(const Entries& entries, unsigned depth);
     template <class Put>
     PointStatistics fill(
@@ -142,10 +143,7 @@ void StatisticsTree::add(
     Entries entries, unsigned from_depth, double capacity, const Put& put, Executor& executor)
 {
     if (entries.empty()) return;
-    std::sort(
-        entries.begin(), entries.end(),
-        [](const Entry& a, const Entry& b)
-        { return a.way != b.way ? a.way < b.way : a.index < b.index; });
+    sort(entries, executor);
     std::vector<Subtree> subtrees = subtreesOf(entries, from_depth);
     executor.forChunks(
         subtrees.size(), 8,
