@@ -50,8 +50,11 @@ ResultFiles::ResultFiles(const std::string& folder, bool refined, bool points)
 void ResultFiles::add(const ScanResult& result)
 {
     const NavState& x = result.estimate.state;
+    // Without an IMU the second scan could move the first, where the map begins, only along a speed
+    // that is not known.
+    const bool refined = refined_ && (result.with_imu || poses_ > 0);
     if (pending_)
-        writePose(pending_->t, refined_ ? result.previous.T_world_imu : pending_->T_world_imu);
+        writePose(pending_->t, refined ? result.previous.T_world_imu : pending_->T_world_imu);
     pending_ = StampedPose{x.t, x.T_world_imu};
     writeState(result);
     writeTiming(result);

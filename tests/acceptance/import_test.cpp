@@ -252,12 +252,9 @@ TEST_F(ACapture, OfAVlp16OnItsStandStaysWhereItIs)
 {
     if (!run("vlp16_5hz")) GTEST_SKIP() << "vlp16_5hz.pcap is absent";
     ASSERT_EQ(trajectory_.size(), 19U);
-    // Without an IMU. Nothing was there to match the first sweep with: the second one moves its
-    // pose by a guess at the speed (measured: 0.23 m). All others stay (measured: 0.07 m).
-    const Vector3d& second = trajectory_[1].T_world_imu.p;
-    EXPECT_LT((trajectory_[0].T_world_imu.p - second).norm(), 0.3);
-    for (std::size_t i = 1; i < trajectory_.size(); i++)
-        EXPECT_LT((trajectory_[i].T_world_imu.p - second).norm(), 0.1) << "pose " << i;
+    // Without an IMU, so the speed over the first sweep is unknown at first.
+    for (const auto& state : trajectory_)
+        EXPECT_LT((state.T_world_imu.p - trajectory_[0].T_world_imu.p).norm(), 0.1);
 }
 
 // The facts beside the capture say 0.498 m, by another program.

@@ -83,6 +83,7 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples& imu)
     Stopwatch watch;
     const Time begin = previous_.state.t;
     const Scan scan = transformScan(raw, config_.range, begin);
+    result.with_imu = with_imu_;
     result.scan_points = scan.points.size();
     watch.stage(result.times.transform);
 

@@ -19,11 +19,19 @@ constexpr double kLidarGap = 0.5;  // [s]
 
 // Scans that a start in motion looks at, and how often.
 constexpr std::size_t kBootstrapScans = 10;
-constexpr int kBootstrapPasses = 4;
+constexpr int kBootstrapPasses = 12;
+constexpr double kSettledVelocity = 0.02;  // [m/s] change by a pass
+constexpr double kSettledTilt = 0.003;     // [rad]
 
-/** Gravity, in the world frame of the results, from the LiDAR's poses and the IMU's integrals: the
- * positions are p_0 + v_0 t + (double integral of R a) - 1/2 g t^2, linear in v_0 and g. */
-Vector3d gravityFrom(const std::vector<ScanResult>& results)
+/** What the body did when the first scan ended, in the world frame of the results. */
+struct StartOfMotion
+{
+    Vector3d velocity, gravity;
+};
+
+/** From the LiDAR's poses and the IMU's integrals: the positions are p_0 + v_0 t + (double integral
+ * of R a) - 1/2 g t^2, linear in p_0, v_0 and g. */
+StartOfMotion startOfMotion(const std::vector<ScanResult>& results)
 {
     // The pose after the next scan is better than the one before it.
     const auto poseOf = [&](std::size_t k)
@@ -31,23 +39,27 @@ Vector3d gravityFrom(const std::vector<ScanResult>& results)
         return k + 1 < results.size() ? results[k + 1].previous.T_world_imu
                                       : results[k].estimate.state.T_world_imu;
     };
-    Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-    Eigen::Matrix<double, 2, 3> right = Eigen::Matrix<double, 2, 3>::Zero();
+    Matrix3d normal = Matrix3d::Zero();
+    Matrix3d right = Matrix3d::Zero();
     Vector3d single = Vector3d::Zero(), twice = Vector3d::Zero();  // integrals of R a
     double t = 0;
-    for (std::size_t k = 1; k < results.size(); k++)
+    for (std::size_t k = 0; k < results.size(); k++)
     {
-        const Matrix3d R = poseOf(k).R;
-        const Motion& m = results[k].motion;
-        const double dt = results[k].duration;
-        twice += single * dt - R * (m.beta * dt + m.alpha);
-        single -= R * m.beta;
-        t += dt;
-        const Eigen::Vector2d row(t, -0.5 * t * t);
+        if (k > 0)
+        {
+            const Matrix3d R = poseOf(k).R;
+            const Motion& m = results[k].motion;
+            const double dt = results[k].duration;
+            twice += single * dt - R * (m.beta * dt + m.alpha);
+            single -= R * m.beta;
+            t += dt;
+        }
+        const Vector3d row(1, t, -0.5 * t * t);
         normal += row * row.transpose();
-        right += row * (poseOf(k).p - poseOf(0).p - twice).transpose();
+        right += row * (poseOf(k).p - twice).transpose();
     }
-    return normal.ldlt().solve(right).row(1).transpose();
+    const Matrix3d solution = normal.ldlt().solve(right);
+    return {solution.row(1).transpose(), solution.row(2).transpose()};
 }
 }  // namespace
 
@@ -181,19 +193,32 @@ void Pipeline::bootstrap()
     // they tell, until map and motion agree.
     bootstrapped_ = true;
     Initialization start = *initialization_;
-    for (int pass = 0; pass < kBootstrapPasses; pass++)
+    bool settled = waiting_.size() < 2;  // nothing to learn from
+    for (int pass = 0; pass < kBootstrapPasses && !settled; pass++)
     {
         const std::vector<ScanResult> results = tryStart(start);
         if (results.size() < 2) break;
         NavState& x = start.estimate.state;
-        x.v_world += results[1].previous.v_world - results[0].estimate.state.v_world;
-        if (!withImu() || results.size() < kBootstrapScans) continue;
-        const Matrix3d R_level_world =
-            Eigen::Quaterniond::FromTwoVectors(gravityFrom(results), kGravityWorld)
-                .toRotationMatrix();
-        x.T_world_imu.R = R_level_world * x.T_world_imu.R;
-        x.v_world = R_level_world * x.v_world;
+        const Vector3d& assumed = results[0].estimate.state.v_world;
+        Vector3d velocity = results[1].previous.v_world;
+        Eigen::Quaterniond level = Eigen::Quaterniond::Identity();
+        if (results.size() == kBootstrapScans)
+        {
+            const StartOfMotion seen = startOfMotion(results);
+            velocity = seen.velocity;
+            // Without an IMU, level is what the first scan says, and its "gravity" is acceleration.
+            if (withImu()) level = Eigen::Quaterniond::FromTwoVectors(seen.gravity, kGravityWorld);
+        }
+        settled = (velocity - assumed).norm() < kSettledVelocity &&
+                  Eigen::AngleAxisd(level).angle() < kSettledTilt;
+        x.v_world = level * Vector3d(x.v_world + velocity - assumed);
+        x.T_world_imu.R = level * x.T_world_imu.R;
     }
+    if (!settled && warn_)
+        warn_(
+            {start.estimate.state.t, "start_unsettled",
+             "the first scans do not agree on velocity and gravity at the start: the beginning is "
+             "less accurate"});
     odometry_.start(start, withImu());
 }
 

@@ -21,6 +21,7 @@ struct ScanResult
 {
     NavEstimate estimate;  //!< x_k after this scan
     NavState previous;     //!< x_{k-1} as this scan moved it; x_{k-1} unchanged where it is held
+    bool with_imu = true;  //!< false: predicted by constant velocity
     std::vector<Vector3d> points;  //!< undistorted points as inserted, world frame [m]
     /** Where OdometryConfig::keep_undistorted asks for it: each point of the raw scan in the body
      * frame at its end, along the final path [m]; NaN where it was not usable. */
