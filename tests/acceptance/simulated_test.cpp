@@ -67,4 +67,23 @@ TEST_F(WalkWithFaults, IsFollowedToCentimetresUntilTheClocksJump)
     EXPECT_LT(points.rmse, 0.05);
     EXPECT_LT(points.median_scan, 0.02);
 }
+
+TEST(ADriveUnderWay, IsFollowedFromItsFirstSecond)
+{
+    // At 13 m/s the first sweep, undistorted as if the car stood, is wrong by more than a metre.
+    const TemporaryFolder folder;
+    const ProgramRun made = runProgram(
+        TAUT_SIMULATE, "-q -c " TAUT_CONFIG "/scenarios/street_vehicle.yaml -o " +
+                           (folder / "log.rawlog") +
+                           " --set duration=8 --set rest=0 --set lidar.type=VLP-16");
+    ASSERT_EQ(made.exit_code, 0) << made.output;
+    const ProgramRun run = slam(folder / "log.rawlog", folder / "out", "");
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    EXPECT_THAT(run.output, testing::HasSubstr("[no_rest]"));
+    EXPECT_THAT(run.output, testing::Not(testing::HasSubstr("[start_unsettled]")));
+    const Scores scores =
+        scoreTrajectory(readTum(folder / "log.gt.tum"), readTum(folder / "out/trajectory.tum"), {});
+    EXPECT_LT(scores.absolute.position.rmse, 0.02);
+    EXPECT_LT(scores.absolute.position.max, 0.1);
+}
 }  // namespace

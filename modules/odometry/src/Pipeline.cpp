@@ -22,6 +22,7 @@ constexpr std::size_t kBootstrapScans = 10;
 constexpr int kBootstrapPasses = 12;
 constexpr double kSettledVelocity = 0.02;  // [m/s] change by a pass
 constexpr double kSettledTilt = 0.003;     // [rad]
+constexpr double kUnsettled = 20;          // times as much is worth a warning
 
 /** What the body did when the first scan ended, in the world frame of the results. */
 struct StartOfMotion
@@ -193,8 +194,8 @@ void Pipeline::bootstrap()
     // they tell, until map and motion agree.
     bootstrapped_ = true;
     Initialization start = *initialization_;
-    bool settled = waiting_.size() < 2;  // nothing to learn from
-    for (int pass = 0; pass < kBootstrapPasses && !settled; pass++)
+    double change = 0;  // by the last pass, in what is negligible
+    for (int pass = 0; pass < kBootstrapPasses && (pass == 0 || change > 1); pass++)
     {
         const std::vector<ScanResult> results = tryStart(start);
         if (results.size() < 2) break;
@@ -209,12 +210,13 @@ void Pipeline::bootstrap()
             // Without an IMU, level is what the first scan says, and its "gravity" is acceleration.
             if (withImu()) level = Eigen::Quaterniond::FromTwoVectors(seen.gravity, kGravityWorld);
         }
-        settled = (velocity - assumed).norm() < kSettledVelocity &&
-                  Eigen::AngleAxisd(level).angle() < kSettledTilt;
+        change = std::max(
+            (velocity - assumed).norm() / kSettledVelocity,
+            Eigen::AngleAxisd(level).angle() / kSettledTilt);
         x.v_world = level * Vector3d(x.v_world + velocity - assumed);
         x.T_world_imu.R = level * x.T_world_imu.R;
     }
-    if (!settled && warn_)
+    if (change > kUnsettled && warn_)
         warn_(
             {start.estimate.state.t, "start_unsettled",
              "the first scans do not agree on velocity and gravity at the start: the beginning is "
