@@ -4,7 +4,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 bin=${TAUT_BIN:-$root/build/release/bin}
 data=${TAUT_DATA:-$root/../shared/data}
 modes="none rotation imu iterated-imu iterated bridge"
-ablations="default loose unrefined nlopt lines fixed kdtree paper"
+ablations="default fewer loose unrefined nlopt lines fixed kdtree paper"
 rest=2 # s, at the start of the sweeps: for the initialisation; not scored
 head="group,case,axis,level,seed,variant,status,ate_mm,ate_max_mm,rotation_deg,points_mm,points_max_mm,iterations,ms"
 
@@ -13,6 +13,7 @@ options_of() {
   [ "$1" = paper ] || echo "-c $root/config/default.yaml"
   case $1 in
     default) ;;
+    fewer) echo "-s features.max_points=800 -s lidar.max_insert_points=5000" ;;
     unrefined) echo "-s output.refined=false" ;;
     nlopt) echo "-s solver.type=taut::NloptSolver" ;;
     lines) echo "-s map.lines=true" ;;

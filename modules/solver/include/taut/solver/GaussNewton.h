@@ -7,7 +7,7 @@ namespace taut
 struct GaussNewtonConfig
 {
     int max_iterations = 3;
-    double min_step = 0.1;        //!< whitened step, in sigmas, below which it has converged
+    double min_step = 0.01;       //!< whitened step, in sigmas, below which it has converged
     double first_damping = 1e-2;  //!< of the Hessian's diagonal, after a step that did not help
 };
 
