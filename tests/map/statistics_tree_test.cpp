@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "numeric.h"
 
 using namespace taut;
@@ -133,7 +135,12 @@ TEST(StatisticsTree, ASearchGoesOnWhereTheLastOneEnded)
     FilledTree filled;
     const Eigen::Vector3d p(0.55, 0.55, 0.55);
     StatisticsTree::Place place;
-    const auto find = [&] { return filled.tree.find(filled.keyOf(p), kDepth, place); };
+    const auto find = [&]
+    {
+        const octomap::OcTreeKey key = filled.keyOf(p);
+        filled.tree.approach(&key, 1, kDepth, &place);
+        return place.depth == kDepth ? place.node : nullptr;
+    };
     EXPECT_EQ(find(), nullptr);  // the tree is empty
     filled.add(p + Eigen::Vector3d(-0.4, 0, 0));
     EXPECT_EQ(find(), nullptr);
@@ -142,6 +149,32 @@ TEST(StatisticsTree, ASearchGoesOnWhereTheLastOneEnded)
     ASSERT_TRUE(find());
     EXPECT_EQ(find(), filled.find(p, kDepth));
     EXPECT_EQ(find()->statistics().count, 1);
+}
+
+TEST(StatisticsTree, ManyNodesApproachedTogetherAreTheSameAsOneAfterTheOther)
+{
+    FilledTree filled;
+    Random random(6);
+    for (int i = 0; i < 200; i++) filled.add(random.vector(1));
+    for (int round = 0; round < 50; round++)
+    {
+        std::array<octomap::OcTreeKey, 32> keys;
+        std::array<StatisticsTree::Place, 32> places;
+        for (octomap::OcTreeKey& key : keys) key = filled.keyOf(random.vector(1));
+        const unsigned depth = kDepth - static_cast<unsigned>(round) % 5;
+        filled.tree.approach(keys.data(), 32, depth, places.data());
+        int found = 0;
+        for (std::size_t i = 0; i < keys.size(); i++)
+        {
+            const StatisticsNode* node = filled.tree.search(keys[i], depth);  // octomap's own
+            found += node != nullptr;
+            EXPECT_EQ(places[i].depth == depth ? places[i].node : nullptr, node);
+        }
+        if (depth == kDepth - 4)
+        {
+            EXPECT_GT(found, 0);
+        }
+    }
 }
 
 TEST(StatisticsTree, AFullLeafStaysAsItIs)
