@@ -83,7 +83,7 @@ TEST(ADriveUnderWay, IsFollowedFromItsFirstSecond)
     EXPECT_THAT(run.output, testing::Not(testing::HasSubstr("[start_unsettled]")));
     const Scores scores =
         scoreTrajectory(readTum(folder / "log.gt.tum"), readTum(folder / "out/trajectory.tum"), {});
-    EXPECT_LT(scores.absolute.position.rmse, 0.02);
-    EXPECT_LT(scores.absolute.position.max, 0.1);
+    EXPECT_LT(scores.absolute.position.rmse, 0.003);
+    EXPECT_LT(scores.absolute.position.max, 0.015);
 }
 }  // namespace

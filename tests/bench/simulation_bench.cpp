@@ -1,5 +1,9 @@
 #include <benchmark/benchmark.h>
+#include <unistd.h>
 
+#include <filesystem>
+
+#include "program.h"
 #include "taut/simulation/Simulator.h"
 
 using namespace taut;
@@ -35,8 +39,26 @@ void sweeps(benchmark::State& state, WorldType world, LidarType lidar)
     state.counters["points/s"] =
         benchmark::Counter(static_cast<double>(points), benchmark::Counter::kIsRate);
 }
+
+/** The whole program, writing included, on all cores: it shall not take longer than the minute. */
+void aMinuteOfVlp16(benchmark::State& state)
+{
+    const auto folder =
+        std::filesystem::temp_directory_path() / ("taut_bench_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+    for (auto _ : state)
+    {
+        const test::ProgramRun run = test::runProgram(
+            TAUT_SIMULATE, "-q -c " TAUT_CONFIG "/scenarios/hall_violent.yaml -o " +
+                               (folder / "log.rawlog").string() +
+                               " --set duration=60 --set lidar.type=VLP-16");
+        if (run.exit_code != 0) state.SkipWithError(run.output.c_str());
+    }
+    std::filesystem::remove_all(folder);
+}
 }  // namespace
 
+BENCHMARK(aMinuteOfVlp16)->Iterations(1)->Unit(benchmark::kSecond)->UseRealTime();
 BENCHMARK_CAPTURE(sweeps, hall_vlp16, WorldType::Hall, LidarType::Vlp16)
     ->Arg(1)
     ->Arg(2)

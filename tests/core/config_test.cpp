@@ -60,15 +60,13 @@ TEST(Config, RefusesValuesOutOfRangeAndNotNumbers)
     bool b = true;
     EXPECT_THAT(
         messageOf([&] { parse("v: -1").key("v", v, kPositive, "m"); }), HasSubstr("'v' is -1"));
-    EXPECT_THAT(
-        messageOf([&] { parse("v: .nan").key("v", v, kPositive, "m"); }), HasSubstr("'v'"));
+    EXPECT_THAT(messageOf([&] { parse("v: .nan").key("v", v, kPositive, "m"); }), HasSubstr("'v'"));
     EXPECT_THAT(
         messageOf([&] { parse("v: 3 m").key("v", v, kPositive, "m"); }), HasSubstr("not a number"));
     EXPECT_THAT(
         messageOf([&] { parse("n: 1.5").key("n", n, kPositive, ""); }), HasSubstr("whole number"));
     EXPECT_THAT(messageOf([&] { parse("b: maybe").key("b", b, ""); }), HasSubstr("neither true"));
-    EXPECT_THAT(
-        messageOf([&] { parse("s: 3").section("s"); }), HasSubstr("'s' is not a map"));
+    EXPECT_THAT(messageOf([&] { parse("s: 3").section("s"); }), HasSubstr("'s' is not a map"));
 }
 
 TEST(Config, ListsTheChoices)
@@ -79,7 +77,10 @@ TEST(Config, ListsTheChoices)
         B
     } e = E::A;
     EXPECT_THAT(
-        messageOf([&] { parse("e: c").choice<E>("e", e, {{"a", E::A}, {"b", E::B}}, ""); }),
+        messageOf(
+            [&] {
+                parse("e: c").choice<E>("e", e, {{"a", E::A}, {"b", E::B}}, "");
+            }),
         HasSubstr("choose from: a b"));
     parse("e: b").choice<E>("e", e, {{"a", E::A}, {"b", E::B}}, "");
     EXPECT_EQ(e, E::B);

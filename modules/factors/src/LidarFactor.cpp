@@ -110,23 +110,23 @@ void LidarFactor::setCorrespondences(
             predicted_variance_[i] += J.dot(predicted * J) / static_cast<double>(P.rows());
         }
     }
-    surprise_ = surpriseOf(path, balance);
+    measureSurprise(path, balance);
 }
 
-double LidarFactor::surpriseOf(const SweepPath& path, double balance)
+void LidarFactor::measureSurprise(const SweepPath& path, double balance)
 {
-    surprise_ = 1;
+    surprise_ = 1;  // of the residuals alone
     std::vector<double> e2;
     e2.reserve(correspondences_.size());
     forResiduals(
         path, balance,
         [&](double r2, const Noise& noise, int rows)
         { e2.push_back(r2 / (noise.widening * noise.variance * rows)); });
-    if (e2.empty()) return 1;
+    if (e2.empty()) return;
     const auto middle = e2.begin() + static_cast<std::ptrdiff_t>(e2.size() / 2);
     std::nth_element(e2.begin(), middle, e2.end());
     constexpr double kMedianOfChi2 = 0.455;  // one degree of freedom
-    return std::max(1.0, *middle / kMedianOfChi2);
+    surprise_ = std::max(1.0, *middle / kMedianOfChi2);
 }
 
 SampledPath LidarFactor::sampled(const SweepPath& path) const

@@ -12,7 +12,7 @@
 
 namespace taut
 {
-/** A point in the world frame with the kind of surface it lies on, and the side it was seen from. */
+/** A point in the world frame, the kind of surface it lies on and the side it was seen from. */
 struct MapPoint
 {
     Vector3d position = Vector3d::Zero();  //!< [m], world frame

@@ -69,7 +69,7 @@ class LidarFactor
     Interval linearizeInterval(const SampledPath& poses, double balance, Time begin) const;
     Time timeOf(std::size_t i) const { return features_.stamp + features_.points[i].offset; }
     Noise noiseOf(std::size_t i, double balance) const;
-    double surpriseOf(const SweepPath& path, double balance);
+    void measureSurprise(const SweepPath& path, double balance);
 
     template <class Body>
     void forResiduals(const SweepPath& path, double balance, const Body& body) const;
