@@ -341,6 +341,7 @@ TEST(Pipeline, AStartInMotionIsReportedAndSurvived)
     const Outcome done = run(moving);
     EXPECT_FALSE(done.initialization->at_rest);
     EXPECT_EQ(done.log.count("no_rest"), 1u);
+    EXPECT_EQ(done.log.count("start_unsettled"), 0u);
     EXPECT_GE(done.results.size(), moving.scans.size() - 1);
     for (const ScanResult& r : done.results)
         EXPECT_TRUE(r.estimate.state.T_world_imu.p.allFinite());
@@ -352,6 +353,21 @@ TEST(Pipeline, AStartInMotionIsReportedAndSurvived)
         (moving.recording.truth(b.t).T_world_imu.p - moving.recording.truth(a.t).T_world_imu.p)
             .norm();
     EXPECT_NEAR(moved, truth, 0.1);
+}
+
+TEST(Pipeline, AStartInMotionThatDoesNotSettleIsReported)
+{
+    // The IMU turns and falls otherwise than the LiDAR moves.
+    Streams torn = hand();
+    const Time begin = torn.recording.start + fromSeconds(2.2);
+    torn.imu.erase(
+        std::remove_if(
+            torn.imu.begin(), torn.imu.end(), [&](const ImuSample& s) { return s.t < begin; }),
+        torn.imu.end());
+    torn.scans.erase(torn.scans.begin(), torn.scans.begin() + 22);
+    for (ImuSample& s : torn.imu)
+        s.accel += 20 * std::sin(5 * toSeconds(s.t - begin)) * Vector3d(1, 1, 0);
+    EXPECT_EQ(run(torn).log.count("start_unsettled"), 1u);
 }
 
 TEST(Pipeline, MemoryDoesNotGrowInARoomThatIsKnown)

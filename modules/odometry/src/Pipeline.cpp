@@ -1,6 +1,7 @@
 #include "taut/odometry/Pipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace taut
@@ -22,7 +23,8 @@ constexpr std::size_t kBootstrapScans = 10;
 constexpr int kBootstrapPasses = 12;
 constexpr double kSettledVelocity = 0.02;  // [m/s] change by a pass
 constexpr double kSettledTilt = 0.003;     // [rad]
-constexpr double kUnsettled = 20;          // times as much is worth a warning
+constexpr double kUnsettled = 20;          // times as much is worth a warning, and
+constexpr double kWrongGravity = 1.0;      // [m/s^2] off what it is on Earth
 
 /** What the body did when the first scan ended, in the world frame of the results. */
 struct StartOfMotion
@@ -194,7 +196,8 @@ void Pipeline::bootstrap()
     // they tell, until map and motion agree.
     bootstrapped_ = true;
     Initialization start = *initialization_;
-    double change = 0;  // by the last pass, in what is negligible
+    double change = 0;         // by the last pass, in what is negligible
+    double gravity_error = 0;  // [m/s^2] seen by the last pass
     for (int pass = 0; pass < kBootstrapPasses && (pass == 0 || change > 1); pass++)
     {
         const std::vector<ScanResult> results = tryStart(start);
@@ -208,7 +211,11 @@ void Pipeline::bootstrap()
             const StartOfMotion seen = startOfMotion(results);
             velocity = seen.velocity;
             // Without an IMU, level is what the first scan says, and its "gravity" is acceleration.
-            if (withImu()) level = Eigen::Quaterniond::FromTwoVectors(seen.gravity, kGravityWorld);
+            if (withImu())
+            {
+                level = Eigen::Quaterniond::FromTwoVectors(seen.gravity, kGravityWorld);
+                gravity_error = std::abs(seen.gravity.norm() - kGravityWorld.norm());
+            }
         }
         change = std::max(
             (velocity - assumed).norm() / kSettledVelocity,
@@ -216,7 +223,7 @@ void Pipeline::bootstrap()
         x.v_world = level * Vector3d(x.v_world + velocity - assumed);
         x.T_world_imu.R = level * x.T_world_imu.R;
     }
-    if (change > kUnsettled && warn_)
+    if ((change > kUnsettled || gravity_error > kWrongGravity) && warn_)
         warn_(
             {start.estimate.state.t, "start_unsettled",
              "the first scans do not agree on velocity and gravity at the start: the beginning is "
