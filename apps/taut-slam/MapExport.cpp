@@ -1,27 +1,11 @@
 #include "MapExport.h"
 
-#include <cmath>
-
 namespace taut
 {
 namespace
 {
 constexpr std::size_t kMaxVoxels = 8'000'000;  // then the memory of voxels starts anew
 constexpr std::size_t kMaxSample = 1'000'000;
-
-std::uint64_t mix(std::uint64_t k)
-{
-    k *= 0x9e3779b97f4a7c15ULL;
-    return k ^ (k >> 32);
-}
-
-std::uint64_t voxelOf(const Vector3d& p, double size)
-{
-    std::uint64_t key = 0;
-    for (int i = 0; i < 3; i++)
-        key = key << 21 | (static_cast<std::uint64_t>(std::llround(p[i] / size)) & 0x1fffff);
-    return mix(key);  // the low bits choose the bucket
-}
 }  // namespace
 
 void MapExportConfig::declare(ConfigSection& s)
@@ -41,7 +25,7 @@ MapExport::MapExport(const MapExportConfig& config, const std::string& folder)
 
 void MapExport::addPoint(const Vector3d& p)
 {
-    if (!voxels_.insert(voxelOf(p, config_.point_spacing)).second) return;
+    if (!voxels_.insert(voxelKey(p, 1 / config_.point_spacing))) return;
     ply_.append({p.cast<float>(), 0});
     if ((ply_.size() - 1) % sample_stride_ != 0) return;
     sample_.emplace_back(p.cast<float>());

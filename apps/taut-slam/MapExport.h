@@ -1,12 +1,11 @@
 #pragma once
 
-#include <tsl/robin_set.h>
-
 #include <string>
 #include <vector>
 
 #include "taut/core/Config.h"
 #include "taut/core/NavState.h"
+#include "taut/core/VoxelSet.h"
 #include "taut/files/PlyFile.h"
 #include "taut/map/OccupancyWorker.h"
 
@@ -49,7 +48,7 @@ class MapExport
     MapExportConfig config_;
     std::string folder_;
     PlyPointWriter ply_;
-    tsl::robin_set<std::uint64_t> voxels_;
+    VoxelSet voxels_;
     std::vector<Eigen::Vector3f> sample_;
     std::size_t sample_stride_ = 1;
     OccupancyWorker occupancy_;

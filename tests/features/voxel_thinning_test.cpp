@@ -18,7 +18,7 @@ TEST(Voxel, KeysTellVoxelsApartOnBothSidesOfZero)
     EXPECT_NE(key(0.1, 0, 0), key(-0.1, 0, 0));
     EXPECT_NE(key(0.1, 0, 0), key(0, 0.6, 0));
     EXPECT_NE(key(0, 0.6, 0), key(0, 0, 0.6));
-    EXPECT_EQ(key(1e12, 0, 0), key(1e15, 0, 0)) << "far points share the border";
+    EXPECT_EQ(key(1e12, 0, 0), key(1e15, 0, 0)) << "what is too far shares a voxel";
     EXPECT_NE(key(1e12, 0, 0), key(-1e12, 0, 0));
 }
 

@@ -69,6 +69,35 @@ OccupancyMap mapOfWall(const OccupancyMap::Config& config = {})
 }
 }  // namespace
 
+TEST(OccupancyMap, IsWhatOctomapMakesOfTheSameRays)
+{
+    OccupancyMap::Config config;
+    config.max_range = 6;  // some rays end before the wall
+    OccupancyMap map(config);
+    octomap::OcTree reference(config.resolution);
+    Random random(3);
+    for (int i = 0; i < 40; i++)
+    {
+        // Round and round: cells become certainly free, and a wall that moves fills some again.
+        const Vector3d origin = random.vector(2);
+        const auto wall = wallAround({0, 0, 0}, i < 30 ? 6.0 : 3.0, 500);
+        map.insert(0, origin, wall, {});
+        octomap::Pointcloud cloud;
+        for (const Vector3d& p : wall)
+            cloud.push_back(
+                static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()));
+        reference.insertPointCloud(
+            cloud,
+            {static_cast<float>(origin.x()), static_cast<float>(origin.y()),
+             static_cast<float>(origin.z())},
+            config.max_range, true, true);
+    }
+    reference.updateInnerOccupancy();
+    reference.prune();
+    EXPECT_GT(reference.size(), 5000u);
+    EXPECT_TRUE(map.tree() == reference);
+}
+
 TEST(OccupancyMap, TellsOccupiedFreeAndUnknownApart)
 {
     const OccupancyMap map = mapOfWall();

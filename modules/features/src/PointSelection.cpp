@@ -1,11 +1,10 @@
 #include "PointSelection.h"
 
-#include <tsl/robin_map.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <tuple>
+#include <vector>
 
 #include "taut/core/Voxel.h"
 
@@ -24,10 +23,59 @@ std::uint64_t lotOf(const LidarPoint& point)
     return mixBits(first ^ mixBits(second + 0x9e3779b97f4a7c15u));
 }
 
-struct Drawn
+/** The point drawn of each voxel. A table of its own, small enough for the cache: this is the loop of
+ * an extraction that takes the time. */
+class Draw
 {
-    std::uint64_t lot;
-    std::uint32_t index;
+ public:
+    explicit Draw(std::size_t most_voxels) : table_(powerOfTwoAbove(2 * most_voxels), kEmpty)
+    {
+        drawn_.reserve(most_voxels);
+    }
+
+    /** Of the points of a voxel the one of the smallest lot is kept. */
+    void add(std::uint64_t voxel, std::uint64_t lot, std::uint32_t point)
+    {
+        std::size_t at = VoxelHash()(voxel) & (table_.size() - 1);
+        while (table_[at] != kEmpty && drawn_[table_[at]].voxel != voxel)
+            at = (at + 1) & (table_.size() - 1);
+        if (table_[at] == kEmpty)
+        {
+            table_[at] = static_cast<std::uint32_t>(drawn_.size());
+            drawn_.push_back({voxel, lot, point});
+            return;
+        }
+        Drawn& drawn = drawn_[table_[at]];
+        if (lot >= drawn.lot) return;
+        drawn.lot = lot;
+        drawn.point = point;
+    }
+
+    PointIndices points() const
+    {
+        PointIndices all;
+        all.reserve(drawn_.size());
+        for (const Drawn& d : drawn_) all.push_back(d.point);
+        return all;
+    }
+
+ private:
+    struct Drawn
+    {
+        std::uint64_t voxel, lot;
+        std::uint32_t point;
+    };
+    static constexpr std::uint32_t kEmpty = 0xffffffff;
+
+    static std::size_t powerOfTwoAbove(std::size_t n)
+    {
+        std::size_t power = 1;
+        while (power <= n) power *= 2;
+        return power;
+    }
+
+    std::vector<std::uint32_t> table_;  // places in drawn_, by hash
+    std::vector<Drawn> drawn_;
 };
 }  // namespace
 
@@ -43,19 +91,13 @@ PointIndices finitePoints(const Scan& scan)
 PointIndices onePerVoxel(const Scan& scan, const PointIndices& candidates, double voxel_size)
 {
     const float inverse = static_cast<float>(1 / voxel_size);
-    tsl::robin_map<std::uint64_t, Drawn, VoxelHash> drawn;
-    drawn.reserve(candidates.size() / 4);
+    Draw draw(candidates.size());
     for (const std::uint32_t i : candidates)
     {
         const LidarPoint& point = scan.points[i];
-        const Drawn mine{lotOf(point), i};
-        const auto [it, is_new] = drawn.try_emplace(voxelKey(point.position, inverse), mine);
-        if (!is_new && mine.lot < it->second.lot) it.value() = mine;
+        draw.add(voxelKey(point.position, inverse), lotOf(point), i);
     }
-    PointIndices kept;
-    kept.reserve(drawn.size());
-    for (const auto& [voxel, chosen] : drawn) kept.push_back(chosen.index);
-    return kept;
+    return draw.points();
 }
 
 PointIndices thinToAtMost(

@@ -30,6 +30,11 @@ std::ostream& writeHeader(std::ostream& file, const char* kind, const octomap::O
                 << tree.getResolution() << "\ndata\n";
 }
 
+std::uint64_t voxelOf(const octomap::OcTreeKey& key)
+{
+    return std::uint64_t{key[0]} << 42 | std::uint64_t{key[1]} << 21 | key[2];
+}
+
 /** Key of the cell twice as large that holds the cell of this key; the tree's origin stays. */
 octomap::OcTreeKey coarserKey(const octomap::OcTreeKey& key)
 {
@@ -74,8 +79,7 @@ void OccupancyMap::insert(
             {t, "occupancy_range",
              std::to_string(finite - cloud.size()) + " points left out: too far from the origin"});
 
-    tree_->insertPointCloud(
-        cloud, toOctomap(origin), config_.max_range, /*lazy_eval=*/true, /*discretize=*/true);
+    insertRays(toOctomap(origin), cloud);
     inserted_++;
     const auto most = static_cast<std::size_t>(config_.max_nodes);
     if (inserted_ % kInsertionsPerPruning == 0 || tree_->size() > most) settle();
@@ -88,6 +92,45 @@ void OccupancyMap::insert(
              << " m";
         if (warn) warn({t, "occupancy_coarser", text.str()});
         if (tree_->size() >= before) break;  // a handful of cells far apart
+    }
+}
+
+void OccupancyMap::insertRays(const octomap::point3d& origin, const octomap::Pointcloud& ends)
+{
+    octomap::OcTreeKey key;
+    VoxelSet end_cells;
+    std::vector<octomap::OcTreeKey> rays;
+    for (const octomap::point3d& end : ends)
+        if (tree_->coordToKeyChecked(end, key) && end_cells.insert(voxelOf(key)))
+            rays.push_back(key);
+
+    VoxelSet hit, passed;
+    std::vector<octomap::OcTreeKey> occupied, free;
+    octomap::KeyRay ray;
+    const auto max_range = static_cast<float>(config_.max_range);
+    for (const octomap::OcTreeKey& cell : rays)
+    {
+        octomap::point3d end = tree_->keyToCoord(cell);
+        const octomap::point3d way = end - origin;
+        const bool in_range = way.norm() <= config_.max_range;
+        if (in_range && hit.insert(voxelOf(cell))) occupied.push_back(cell);
+        if (!in_range) end = origin + way.normalized() * max_range;
+        if (!tree_->computeRayKeys(origin, end, ray)) continue;
+        for (const octomap::OcTreeKey& on_way : ray)
+            if (!surely_free_.contains(voxelOf(on_way)) && passed.insert(voxelOf(on_way)))
+                free.push_back(on_way);
+    }
+    for (const octomap::OcTreeKey& cell : free)
+    {
+        if (hit.contains(voxelOf(cell))) continue;
+        const octomap::OcTreeNode* node = tree_->updateNode(cell, false, /*lazy_eval=*/true);
+        if (node->getLogOdds() <= tree_->getClampingThresMinLog())
+            surely_free_.insert(voxelOf(cell));
+    }
+    for (const octomap::OcTreeKey& cell : occupied)
+    {
+        tree_->updateNode(cell, true, /*lazy_eval=*/true);
+        surely_free_.erase(voxelOf(cell));
     }
 }
 
@@ -126,6 +169,7 @@ void OccupancyMap::halveResolution()
     coarser->updateInnerOccupancy();
     coarser->prune();
     tree_ = std::move(coarser);
+    surely_free_.clear();
 }
 
 void OccupancyMap::writeOt(const std::string& path) const

@@ -1,47 +1,25 @@
 #include "taut/render/PointCloud.h"
 
 #include <tsl/robin_map.h>
-#include <tsl/robin_set.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
 
+#include "taut/core/VoxelSet.h"
+
 namespace taut
 {
 namespace
 {
-/** Spreads the bits of a voxel's key over the table. */
-struct KeyHash
-{
-    std::size_t operator()(std::uint64_t key) const
-    {
-        key = (key ^ key >> 32) * 0x9E3779B97F4A7C15ULL;
-        return key >> 24;  // the upper bits depend on all of the key
-    }
-};
-
-/** Key of the voxel of a point; 21 bits an axis. Far outliers share the border voxels. */
-std::uint64_t voxelOf(const Eigen::Vector3f& point, float inverse_size)
-{
-    std::uint64_t key = 0;
-    for (int i = 0; i < 3; ++i)
-    {
-        const float cell = std::clamp(std::floor(point[i] * inverse_size), -1048576.F, 1048575.F);
-        key = key << 21 | static_cast<std::uint64_t>(static_cast<std::int64_t>(cell) + 1048576);
-    }
-    return key;
-}
-
 PointCloud onePerVoxel(const PointCloud& points, double size)
 {
     const auto inverse_size = static_cast<float>(1 / size);
-    tsl::robin_set<std::uint64_t, KeyHash> taken;
-    taken.reserve(points.size() / 2);
+    VoxelSet taken;
     PointCloud kept;
     for (const auto& point : points)
-        if (taken.insert(voxelOf(point, inverse_size)).second) kept.push_back(point);
+        if (taken.insert(voxelKey(point, inverse_size))) kept.push_back(point);
     return kept;
 }
 
@@ -101,12 +79,12 @@ PointCloud withoutStrays(const PointCloud& points)
 {
     constexpr double kStray = 0.05;
     const auto inverse_size = static_cast<float>(48 / std::max(1e-3, robustDiagonal(points)));
-    tsl::robin_map<std::uint64_t, int, KeyHash> counts;
-    for (const auto& point : points) ++counts[voxelOf(point, inverse_size)];
+    tsl::robin_map<std::uint64_t, int, VoxelHash> counts;
+    for (const auto& point : points) ++counts[voxelKey(point, inverse_size)];
 
     std::vector<int> company;
     company.reserve(points.size());
-    for (const auto& point : points) company.push_back(counts.at(voxelOf(point, inverse_size)));
+    for (const auto& point : points) company.push_back(counts.at(voxelKey(point, inverse_size)));
     if (points.empty()) return {};
     std::vector<int> sorted = company;
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);

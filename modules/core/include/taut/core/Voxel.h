@@ -17,11 +17,11 @@ constexpr std::uint64_t mixBits(std::uint64_t x)
 }
 
 /** The voxel that holds a finite point, 21 bits a coordinate. `inverse_size` is 1 / edge [1/m].
- * Points further than 2^20 voxels from the origin share the voxels at the border. */
+ * Voxels that are 2^21 voxels apart along an axis share a key. */
 template <class Scalar>
 std::uint64_t voxelKey(const Eigen::Matrix<Scalar, 3, 1>& point, Scalar inverse_size)
 {
-    constexpr Scalar limit = (1 << 20) - 1;
+    constexpr Scalar limit = (1 << 30) - (1 << 19);  // of what an integer names; no map is so large
     std::uint64_t key = 0;
     for (int i = 0; i < 3; i++)
     {
@@ -29,7 +29,7 @@ std::uint64_t voxelKey(const Eigen::Matrix<Scalar, 3, 1>& point, Scalar inverse_
         auto cell =
             static_cast<std::int32_t>(scaled);  // towards zero; std::floor is 4 times slower
         cell -= scaled < static_cast<Scalar>(cell);
-        key = key << 21 | static_cast<std::uint64_t>(cell + (1 << 20));
+        key = key << 21 | (static_cast<std::uint64_t>(cell + (1 << 20)) & 0x1fffff);
     }
     return key;
 }

@@ -8,6 +8,7 @@
 
 #include "taut/core/Config.h"
 #include "taut/core/Geometry.h"
+#include "taut/core/VoxelSet.h"
 #include "taut/core/Warning.h"
 
 namespace taut
@@ -51,12 +52,17 @@ class OccupancyMap
     double resolution() const { return tree_->getResolution(); }
 
  private:
+    /** Adds a ray to each cell in which points ended, as octomap's insertPointCloud() does with
+     * discretize, to the same result; cells that cannot become any freer are passed over, which
+     * are most of those that rays cross. */
+    void insertRays(const octomap::point3d& origin, const octomap::Pointcloud& ends);
     /** Inner nodes are brought up to date, and equal leaves merged, not after every insertion. */
     void settle() const;
     void halveResolution();
 
     Config config_;
     std::unique_ptr<octomap::OcTree> tree_;
+    VoxelSet surely_free_;  //!< cells at the lower bound of their probability
     int inserted_ = 0;
 };
 }  // namespace taut
