@@ -355,6 +355,19 @@ TEST(Pipeline, AStartInMotionIsReportedAndSurvived)
     EXPECT_NEAR(moved, truth, 0.1);
 }
 
+TEST(Pipeline, SteadyMotionThatTheImuTakesForARestIsFoundByTheLidar)
+{
+    Recording drifting;
+    drifting.drift = {0.2, 0.1, 0};
+    const Outcome done = run({drifting, drifting.imu(), drifting.scans()});
+    EXPECT_TRUE(done.initialization->at_rest) << "the IMU cannot know";
+    EXPECT_EQ(done.log.count("rest_left"), 1u);
+    const NavState& last = done.results.back().estimate.state;
+    EXPECT_LT((last.v_world - drifting.truth(last.t).v_world).norm(), 0.1);
+    EXPECT_LT(done.error(drifting), 0.1);
+    EXPECT_EQ(run(hand()).log.count("rest_left"), 0u);
+}
+
 TEST(Pipeline, AStartInMotionThatDoesNotSettleIsReported)
 {
     // The IMU turns and falls otherwise than the LiDAR moves.

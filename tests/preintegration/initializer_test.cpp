@@ -91,6 +91,31 @@ TEST_F(InitializerTest, ARestGivesAttitudeAndBiases)
     EXPECT_TRUE(log.counts().empty());
 }
 
+TEST_F(InitializerTest, ABodySwaysAsFarAsItTurnsAtRest)
+{
+    const auto swayOf = [&](double amplitude)  // [rad], at 0.4 Hz
+    {
+        now = start;
+        Initializer initializer(config, log.sink());
+        const bool found = feed(
+            initializer, 11,
+            [&](Time t)
+            {
+                ImuSample s = body.sample(t);
+                const double rate = 2 * M_PI * 0.4;
+                s.gyro.x() += amplitude * rate * std::cos(rate * toSeconds(t - start));
+                return s;
+            });
+        EXPECT_TRUE(found);
+        return initializer.result()->sway;
+    };
+    gyro_noise = 1e-5;
+    EXPECT_EQ(swayOf(0), config.min_sway);
+    EXPECT_NEAR(swayOf(5e-3), config.sway_lever * 5e-3, 1e-3);
+    config.max_sway = 3e-3;
+    EXPECT_EQ(swayOf(5e-3), config.max_sway);
+}
+
 TEST_F(InitializerTest, TiltAndAccelerometerBiasAreCorrelated)
 {
     Initializer initializer(config, log.sink());
@@ -125,6 +150,7 @@ TEST_F(InitializerTest, AShorterRestIsUsedAndReported)
     ASSERT_TRUE(walk(initializer, 2));
     EXPECT_TRUE(initializer.result()->at_rest);
     EXPECT_NEAR(initializer.result()->rest_duration, 3, 0.5);
+    EXPECT_EQ(initializer.result()->sway, config.max_sway);
     EXPECT_EQ(initializer.result()->estimate.state.t, start);
     expectTrueAttitude(*initializer.result());
     ASSERT_EQ(log.count("short_rest"), 1u);

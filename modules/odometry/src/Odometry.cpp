@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "taut/factors/SampledPath.h"
 
@@ -16,6 +17,9 @@ namespace
 /** Share of the prediction's covariance that is left to explain residuals after each look-up of
  * correspondences, since an estimate takes its place: the kernel closes step by step. */
 constexpr double kStillPredicted = 0.25;
+
+/** A body that is this many sways from where it rests does not rest. */
+constexpr double kRestLeft = 4;
 
 /** Adds the time since its last call to a stage. */
 class Stopwatch
@@ -56,6 +60,7 @@ void Odometry::start(const Initialization& initialization, bool with_imu)
     rest_end_ = initialization.at_rest
                     ? previous_.state.t + fromSeconds(initialization.rest_duration)
                     : previous_.state.t;
+    rest_sway_ = initialization.sway;
     noise_ = config_.imu_noise;
     if (config_.imu_noise_from_rest && initialization.at_rest)
     {
@@ -117,7 +122,7 @@ void Odometry::estimate(
     LidarFactor lidar(features, config_.lidar_noise, executor_);
     ScanProblem problem(previous_, motion, lidar, path, config);
     problem.useLidar(false);
-    problem.setAtRest(motion.end() <= rest_end_);
+    problem.setRest(motion.end() <= rest_end_ ? rest_sway_ : 0);
 
     std::vector<MapPoint> queries(features.points.size());
     std::vector<Correspondence> correspondences;
@@ -168,6 +173,20 @@ void Odometry::estimate(
     previous_ = {problem.current(), information};
     result.estimate.state = previous_.state;
     result.estimate.covariance = information.ldlt().solve(NavState::Matrix::Identity());
+    endRestIfLeft();
+}
+
+void Odometry::endRestIfLeft()
+{
+    // Steady motion is a rest to the IMU; the LiDAR knows better.
+    const Time t = previous_.state.t;
+    const double moved = previous_.state.T_world_imu.p.norm();
+    if (t > rest_end_ || moved < kRestLeft * rest_sway_) return;
+    rest_end_ = t;
+    if (!warn_) return;
+    std::ostringstream text;
+    text << "the LiDAR moves by " << 1e3 * moved << " mm while the IMU rests";
+    warn_({t, "rest_left", text.str()});
 }
 
 double Odometry::balanceOf(const LidarFactor& lidar, const SweepPath& path, int matches) const

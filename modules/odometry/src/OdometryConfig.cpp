@@ -20,7 +20,6 @@ void EstimationConfig::declare(ConfigSection& s)
     s.key("accel_bias_sigma", accel_bias_sigma, kPositive, "m/s^2, absolute prior");
     s.key("gyro_bias_sigma", gyro_bias_sigma, kPositive, "rad/s, absolute prior");
     s.key("bias_time", bias_time, kPositive, "s, in which the absolute prior is renewed once");
-    s.key("rest_sway", rest_sway, kPositive, "m, how far a body at rest moves at the start");
     s.key("max_step_position", max_step_position, kPositive, "m, bound of one step");
     s.key("max_step_velocity", max_step_velocity, kPositive, "m/s");
     s.key("max_step_rotation", max_step_rotation, kPositive, "rad");

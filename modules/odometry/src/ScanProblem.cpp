@@ -96,7 +96,7 @@ double ScanProblem::addBiasPrior(ProblemMatrix& H, ProblemVector& g) const
 
 double ScanProblem::addRest(ProblemMatrix& H, ProblemVector& g) const
 {
-    const double w = 1 / square(config_.rest_sway);
+    const double w = 1 / square(rest_sway_);
     const int row = dimension() - kN + NavState::kPosition;
     H.diagonal().segment<3>(row).array() += w;
     g.segment<3>(row) += w * current_.T_world_imu.p;
@@ -107,7 +107,7 @@ double ScanProblem::addAllButLidar(ProblemMatrix& H, ProblemVector& g) const
 {
     double cost = addImu(H, g) + addBiasPrior(H, g);
     if (released()) cost += addPrior(H, g);
-    if (at_rest_) cost += addRest(H, g);
+    if (rest_sway_ > 0) cost += addRest(H, g);
     return cost;
 }
 

@@ -1,5 +1,6 @@
 #include "taut/preintegration/Initializer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -56,6 +57,10 @@ void InitializationConfig::declare(ConfigSection& s)
     s.key("max_accel_change", max_accel_change, kPositive, "m/s^2, between means of windows");
     s.key("max_gyro_bias", max_gyro_bias, kPositive, "rad/s, a higher steady rate is motion");
     s.key("gravity_tolerance", gravity_tolerance, kPositive, "m/s^2, mean specific force to 9.81");
+    s.key("sway_lever", sway_lever, kPositive, "m, a body at rest moves by this times its rotation");
+    s.key("min_sway", min_sway, kPositive, "m, and at least");
+    s.key("max_sway", max_sway, kPositive, "m, and at most: after a rest cut short");
+    if (min_sway > max_sway) throw ConfigError(s.path() + ": min_sway exceeds max_sway");
     s.key("accel_bias_sigma", accel_bias_sigma, kPositive, "m/s^2, absolute prior");
     s.key("gyro_bias_sigma", gyro_bias_sigma, kPositive, "rad/s, absolute prior");
     s.key("moving_tilt_sigma", moving_tilt_sigma, kPositive, "rad, prior of a start in motion");
@@ -122,8 +127,8 @@ void Initializer::closeWindow()
         return;
     }
     rest_.add(w);
-    if (toSeconds(rest_.end - rest_.begin) >= config_.rest_duration - config_.window)
-        result_ = fromRest();
+    rests_.push_back(w);
+    if (restedFully()) result_ = fromRest();
 }
 
 bool Initializer::plausibleRest(const Window& w) const
@@ -154,6 +159,7 @@ void Initializer::onMotion(Time t)
         return;
     }
     rest_ = {};
+    rests_.clear();
     if (config_.on_motion == OnMotion::Start)
     {
         startInMotion(t, rested);
@@ -182,6 +188,25 @@ void Initializer::startInMotion(Time t, double rested)
                  rested, config_.min_rest)});
 }
 
+bool Initializer::restedFully() const
+{
+    return toSeconds(rest_.end - rest_.begin) >= config_.rest_duration - config_.window;
+}
+
+double Initializer::swayAtRest() const
+{
+    if (!restedFully()) return config_.max_sway;
+    const Vector3d bias = rest_.gyroMean();
+    Vector3d turned = Vector3d::Zero();
+    double furthest = 0;
+    for (const Window& w : rests_)
+    {
+        turned += (w.gyroMean() - bias) * toSeconds(w.end - w.begin);
+        furthest = std::max(furthest, turned.norm());
+    }
+    return std::clamp(config_.sway_lever * furthest, config_.min_sway, config_.max_sway);
+}
+
 Initialization Initializer::fromRest() const
 {
     const Window& w = rest_;
@@ -193,6 +218,7 @@ Initialization Initializer::fromRest() const
 
     Initialization init;
     init.rest_duration = seconds;
+    init.sway = swayAtRest();
     init.measured_noise = {};
     init.measured_noise.accel = std::sqrt(std::max(0.0, accel_variance.mean()) * dt);
     init.measured_noise.gyro = std::sqrt(std::max(0.0, gyro_variance.mean()) * dt);

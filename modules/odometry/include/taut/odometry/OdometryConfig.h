@@ -37,8 +37,6 @@ struct EstimationConfig
     double gyro_bias_sigma = 0.02;  //!< [rad/s]
     double bias_time = 30.0;        //!< [s]
 
-    double rest_sway = 0.02;  //!< [m] that the body is away from the origin while it rests there
-
     // Bounds of one step.
     double max_step_position = 1.0;  //!< [m]
     double max_step_velocity = 5.0;  //!< [m/s]

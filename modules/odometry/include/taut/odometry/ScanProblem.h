@@ -45,10 +45,11 @@ class ScanProblem : public LeastSquaresProblem
         balance_ = balance;
         linearized_ = false;
     }
-    /** The body is known to rest, at the origin, at t_k. */
-    void setAtRest(bool at_rest)
+    /** The body is known to rest at t_k, no further from the origin than `sway` [m, one standard
+     * deviation]; 0: nothing is known. */
+    void setRest(double sway)
     {
-        at_rest_ = at_rest;
+        rest_sway_ = sway;
         linearized_ = false;
     }
     /** Without LiDAR the problem is prediction and prior alone. */
@@ -87,6 +88,7 @@ class ScanProblem : public LeastSquaresProblem
     ProblemMatrix hessian_, lidar_hessian_;  // of the last linearisation
     bool linearized_ = false;                // at the current estimate, noise and correspondences
     double balance_ = 1;
-    bool use_lidar_ = true, at_rest_ = false;
+    bool use_lidar_ = true;
+    double rest_sway_ = 0;
 };
 }  // namespace taut

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "taut/core/Config.h"
 #include "taut/core/Imu.h"
@@ -29,6 +30,12 @@ struct InitializationConfig
     double max_gyro_bias = 0.1;      //!< [rad/s] a steady rate above this is motion, not a bias
     double gravity_tolerance = 0.8;  //!< [m/s^2] of the mean specific force from 9.81
 
+    // How far a body at rest moves: a lever times the furthest that it turns, within bounds. A rest
+    // that motion cuts short may end in a part of that motion: it sways as far as any.
+    double sway_lever = 1.0;  //!< [m]
+    double min_sway = 1e-3;   //!< [m]
+    double max_sway = 0.02;   //!< [m]
+
     // Prior of the biases, one standard deviation.
     double accel_bias_sigma = 0.1;  //!< [m/s^2]
     double gyro_bias_sigma = 0.02;  //!< [rad/s]
@@ -46,6 +53,7 @@ struct Initialization
     NavEstimate estimate;  //!< state at the start of the rest (or of the data), with its covariance
     bool at_rest = true;
     double rest_duration = 0;  //!< [s] of data used
+    double sway = 0;           //!< [m] that the body is away from the origin while it rests there
     ImuNoise measured_noise;   //!< white noise densities seen at rest; 0 if not at rest
 };
 
@@ -81,16 +89,19 @@ class Initializer
     };
 
     void closeWindow();
+    bool restedFully() const;
     bool continuesRest(const Window& w) const;
     bool plausibleRest(const Window& w) const;
     void onMotion(Time t);
     void startInMotion(Time t, double rested);
     Initialization fromRest() const;
+    double swayAtRest() const;
     Initialization fromMotion() const;
 
     InitializationConfig config_;
     WarningSink warn_;
     Window current_, first_, rest_;
+    std::vector<Window> rests_;  //!< the windows of rest_
     bool waiting_reported_ = false;
     std::optional<Initialization> result_;
 };
