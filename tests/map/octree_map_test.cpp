@@ -205,6 +205,30 @@ TEST(OctreeMap, LearnsASurfaceThatIsSeenMoreOften)
     EXPECT_GT(known(), 95);
 }
 
+TEST(OctreeMap, ARipeSurfaceIsFollowedByAShareOfItsPoints)
+{
+    // A floor that sinks by 1 cm: the mean of all that was seen, however few points are taken.
+    OctreeMap all, share;
+    all.config.ripe_points = 1e9;
+    for (OctreeMap* map : {&all, &share})
+    {
+        see(*map, floorAt(1.01, 0.01), 20, 1);
+        see(*map, floorAt(1.00, 0.01), 40, 2);
+    }
+    Random random(3);
+    for (int i = 0; i < 50; i++)
+    {
+        const Vector3d query = floorAt(1, 0).at(random, 0.5);
+        const Correspondence a = matchOne(all, query, FeatureKind::Any);
+        const Correspondence b = matchOne(share, query, FeatureKind::Any);
+        ASSERT_EQ(a.surface, Surface::Plane);
+        ASSERT_EQ(b.surface, Surface::Plane);
+        EXPECT_NEAR(a.direction.dot(query - a.point), b.direction.dot(query - b.point), 1.5e-3);
+        EXPECT_NEAR(a.sigma, b.sigma, 1e-3);
+    }
+    EXPECT_EQ(all.size(), share.size());
+}
+
 TEST(OctreeMap, ATravelOfManyKilometresHasNoEnd)
 {
     // OctoMap's keys reach 4 km from their origin with leaves of 0.125 m.

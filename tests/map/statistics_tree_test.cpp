@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "numeric.h"
@@ -20,16 +21,19 @@ struct FilledTree
     StatisticsTree tree{kLeaf};
     unsigned from_depth = 12;
 
-    void add(const Eigen::Vector3d& p, double capacity = 1e9) { add({p}, capacity, 1); }
+    void add(const Eigen::Vector3d& p) { add(std::vector{p}); }
 
-    void add(const std::vector<Eigen::Vector3d>& points, double capacity, int threads)
+    /** Gives the indices of a point in each ripe node. */
+    std::vector<std::uint32_t> add(
+        const std::vector<Eigen::Vector3d>& points, int threads = 1,
+        const StatisticsTree::Ripeness& ripeness = {})
     {
         StatisticsTree::Entries entries;
         for (std::uint32_t i = 0; i < points.size(); i++)
             entries.push_back({StatisticsTree::wayTo(keyOf(points[i])), i});
         Executor executor(threads);
-        tree.add(
-            entries, from_depth, capacity,
+        return tree.add(
+            entries, from_depth, ripeness,
             [&](std::uint32_t i, PointStatistics& sum) { sum.add(points[i]); }, executor);
     }
 
@@ -112,8 +116,8 @@ TEST(StatisticsTree, ManyPointsAtOnceAreTheSameAsOneAfterTheOther)
         std::vector<Eigen::Vector3d> points;
         for (int i = 0; i < 3000; i++) points.push_back(random.vector(2));
         for (const Eigen::Vector3d& p : points) one_by_one.add(p);
-        at_once.add(points, 1e9, 1);
-        in_parallel.add(points, 1e9, 3);
+        at_once.add(points);
+        in_parallel.add(points, 3);
     }
     EXPECT_EQ(at_once.tree.size(), one_by_one.tree.size());
     EXPECT_EQ(at_once.tree.size(), at_once.tree.calcNumNodes());
@@ -177,15 +181,44 @@ TEST(StatisticsTree, ManyNodesApproachedTogetherAreTheSameAsOneAfterTheOther)
     }
 }
 
-TEST(StatisticsTree, AFullLeafStaysAsItIs)
+TEST(StatisticsTree, TellsWhichNodesAreRipe)
 {
     FilledTree filled;
-    const Eigen::Vector3d p(0.55, 0.55, 0.55);
-    for (int i = 0; i < 4; i++) filled.add(p, 3);
-    EXPECT_EQ(filled.find(p, kDepth)->statistics().count, 3);
-    EXPECT_EQ(filled.find(p, 12)->statistics().count, 3);
-    filled.add(p + Eigen::Vector3d(0.1, 0, 0), 3);  // its neighbour is not full
-    EXPECT_EQ(filled.find(p, 12)->statistics().count, 4);
+    Random random(8);
+    const Eigen::Vector3d here(1, 1, 1), there(-20, 10, 5);
+    const unsigned depth = kDepth - 2;
+    std::vector<Eigen::Vector3d> points;
+    for (int i = 0; i < 300; i++) points.push_back(here + random.vector(0.02));
+    for (int i = 0; i < 300; i++) points.push_back(there + random.vector(2));
+    for (int round = 0; round < 2; round++)
+    {
+        std::vector<const StatisticsNode*> ripe;
+        for (const std::uint32_t i : filled.add(points, 2, {depth, 100}))
+            ripe.push_back(filled.find(points[i], depth));
+        for (const auto& p : points)
+        {
+            const StatisticsNode* node = filled.find(p, depth);
+            const auto told = std::count(ripe.begin(), ripe.end(), node);
+            EXPECT_EQ(told, node->statistics().count >= 100 ? 1 : 0);
+        }
+        EXPECT_GT(ripe.size(), 0u);
+    }
+}
+
+TEST(PointStatistics, AWeightCountsAPointSeveralTimes)
+{
+    Random random(9);
+    PointStatistics weighted, repeated;
+    for (int i = 0; i < 20; i++)
+    {
+        const Eigen::Vector3d p = random.vector(2), view = random.vector(1).normalized();
+        weighted.add(p, view, 4);
+        for (int k = 0; k < 4; k++) repeated.add(p, view);
+    }
+    EXPECT_EQ(weighted.count, repeated.count);
+    EXPECT_LT((weighted.mean() - repeated.mean()).norm(), 1e-12);
+    EXPECT_LT((weighted.scatter() - repeated.scatter()).norm(), 1e-9);
+    EXPECT_LT((weighted.views - repeated.views).norm(), 1e-12);
 }
 
 TEST(StatisticsTree, RemovingANodeRemovesAllBelowIt)

@@ -23,8 +23,8 @@ std::uint64_t lotOf(const LidarPoint& point)
     return mixBits(first ^ mixBits(second + 0x9e3779b97f4a7c15u));
 }
 
-/** The point drawn of each voxel. A table of its own, small enough for the cache: this is the loop of
- * an extraction that takes the time. */
+/** The point drawn of each voxel. A table of its own, small enough for the cache: this is the loop
+ * of an extraction that takes the time. */
 class Draw
 {
  public:

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "packedKey.h"
 
@@ -14,6 +13,16 @@ namespace
 {
 constexpr double kBlockSize = 8.0;    // [m] about: unit of forgetting
 constexpr int kRecenterKeys = 16384;  // leaves from the origin: half of what keys can name
+
+constexpr int kRipeLevel = 2;       // of the nodes that are judged: 4 leaves a side
+constexpr unsigned kRipeShare = 4;  // one point in so many
+
+/** The node of that level that holds a leaf. */
+std::uint64_t ripeKey(const octomap::OcTreeKey& leaf)
+{
+    return std::uint64_t{leaf[0]} >> kRipeLevel << 42 | std::uint64_t{leaf[1]} >> kRipeLevel << 21 |
+           std::uint64_t{leaf[2]} >> kRipeLevel;
+}
 
 octomap::point3d toOctomap(const Vector3d& p)
 {
@@ -32,6 +41,7 @@ OctreeMap::OctreeMap(const OctreeMap& other)
       tree_(std::make_unique<StatisticsTree>(*other.tree_)),
       levels_(other.levels_.size()),  // without the cache, which names the other's nodes
       insertions_(other.insertions_),
+      ripe_(other.ripe_),
       blocks_(other.blocks_),
       last_center_(other.last_center_),
       origin_(other.origin_)
@@ -54,7 +64,9 @@ void OctreeMap::configure(ConfigSection& s)
         "the same as a share of the window's half edge");
     s.key("gate", config.gate, kPositive, "m, largest distance to the surface");
     s.key("min_sigma", config.min_sigma, kPositive, "m, no surface is believed to be thinner");
-    s.key("leaf_capacity", config.leaf_capacity, kPositive, "points after which a leaf is full");
+    s.key(
+        "ripe_points", config.ripe_points, kPositive,
+        "in a node of 4 leaf_size: from then on it takes one point in four, with that weight");
     s.key("lines", config.lines, "match thin, long windows as lines");
     s.key(
         "window_radius", config.window_radius, kPositive, "m, half edge of the cube that is kept");
@@ -67,6 +79,7 @@ void OctreeMap::clear()
     levels_.assign(static_cast<std::size_t>(config.scales), {});
     blocks_.clear();
     insertions_ = 0;
+    ripe_.clear();
     lookups_.clear();
     last_center_.setConstant(1e300);
     origin_.setZero();
@@ -82,32 +95,41 @@ void OctreeMap::insert(const std::vector<MapPoint>& points, Executor& executor)
 {
     const unsigned above_leaf = kTreeDepth - blockDepth();
     std::vector<octomap::OcTreeKey> keys(points.size());
-    std::vector<char> inside(points.size());
+    std::vector<double> weights(points.size(), 0);
     executor.forChunks(
         points.size(), 1024,
         [&](std::size_t, std::size_t begin, std::size_t end)
         {
             for (std::size_t i = begin; i < end; i++)
-                inside[i] =
-                    points[i].position.allFinite() &&
-                    tree_->coordToKeyChecked(toOctomap(points[i].position - origin_), keys[i]);
+                if (points[i].position.allFinite() &&
+                    tree_->coordToKeyChecked(toOctomap(points[i].position - origin_), keys[i]))
+                    weights[i] = weightOf(keys[i], static_cast<std::uint32_t>(i));
         });
     StatisticsTree::Entries entries;
     entries.reserve(points.size());
     std::uint64_t last_block = ~std::uint64_t{0};
     for (std::uint32_t i = 0; i < points.size(); i++)
     {
-        if (!inside[i]) continue;
+        if (weights[i] == 0) continue;
         entries.push_back({StatisticsTree::wayTo(keys[i]), i});
         const std::uint64_t block = entries.back().way >> 3 * above_leaf;
         if (block != last_block) remember(keys[i]);
         last_block = block;
     }
-    tree_->add(
-        std::move(entries), depthOf(config.scales - 1), config.leaf_capacity,
-        [&](std::uint32_t i, PointStatistics& sum) { sum.add(points[i].position, points[i].view); },
+    const std::vector<std::uint32_t> ripe = tree_->add(
+        std::move(entries), depthOf(config.scales - 1), {depthOf(kRipeLevel), config.ripe_points},
+        [&](std::uint32_t i, PointStatistics& sum)
+        { sum.add(points[i].position, points[i].view, weights[i]); },
         executor);
+    for (const std::uint32_t i : ripe) ripe_.insert(ripeKey(keys[i]));
     insertions_++;
+}
+
+double OctreeMap::weightOf(const octomap::OcTreeKey& leaf, std::uint32_t point) const
+{
+    if (!ripe_.contains(ripeKey(leaf))) return 1;
+    const std::uint64_t lot = mixBits(std::uint64_t{insertions_} << 32 | point);
+    return lot % kRipeShare == 0 ? kRipeShare : 0;
 }
 
 void OctreeMap::remember(const octomap::OcTreeKey& leaf)
@@ -124,6 +146,7 @@ void OctreeMap::slide(const Vector3d& center_world)
     if ((center_world - last_center_).norm() < kBlockSize) return;
     last_center_ = center_world;
     lookups_.clear();
+    ripe_.clear();  // of what may be forgotten; the others tell again
     const double reach = config.window_radius + kBlockSize;
     const auto outside = [&](const octomap::OcTreeKey& key, unsigned depth)
     {
@@ -192,7 +215,7 @@ void OctreeMap::recenter(const Vector3d& center_world)
     levels_.assign(levels_.size(), {});
     Executor single;
     tree_->add(
-        std::move(entries), depthOf(config.scales - 1), std::numeric_limits<double>::infinity(),
+        std::move(entries), depthOf(config.scales - 1), {},
         [&](std::uint32_t i, PointStatistics& sum) { sum.add(leaves[i]); }, single);
 }
 }  // namespace taut

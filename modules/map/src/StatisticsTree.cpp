@@ -4,17 +4,18 @@
 
 namespace taut
 {
-void PointStatistics::add(const Eigen::Vector3d& p, const Eigen::Vector3d& view)
+void PointStatistics::add(const Eigen::Vector3d& p, const Eigen::Vector3d& view, double weight)
 {
-    count += 1;
-    views += view;
-    sum += p;
-    moments[0] += p.x() * p.x();
-    moments[1] += p.x() * p.y();
-    moments[2] += p.x() * p.z();
-    moments[3] += p.y() * p.y();
-    moments[4] += p.y() * p.z();
-    moments[5] += p.z() * p.z();
+    const Eigen::Vector3d wp = weight * p;
+    count += weight;
+    views += weight * view;
+    sum += wp;
+    moments[0] += wp.x() * p.x();
+    moments[1] += wp.x() * p.y();
+    moments[2] += wp.x() * p.z();
+    moments[3] += wp.y() * p.y();
+    moments[4] += wp.y() * p.z();
+    moments[5] += wp.z() * p.z();
 }
 
 void PointStatistics::add(const PointStatistics& other)
@@ -159,7 +160,7 @@ std::vector<StatisticsTree::Subtree> StatisticsTree::subtreesOf(
         root = new StatisticsNode();
         tree_size++;
     }
-    std::vector<Subtree> level{{root, entries.data(), entries.data() + entries.size()}};
+    std::vector<Subtree> level{{root, entries.data(), entries.data() + entries.size(), 0, {}}};
     for (unsigned d = 0; d < depth; d++)
     {
         std::vector<Subtree> next;
@@ -168,7 +169,7 @@ std::vector<StatisticsTree::Subtree> StatisticsTree::subtreesOf(
             {
                 const Entry* end = childEnd(e, s.end, d);
                 bool is_new = false;
-                next.push_back({&s.node->makeChild(childOf(*e, d), is_new), e, end});
+                next.push_back({&s.node->makeChild(childOf(*e, d), is_new), e, end, 0, {}});
                 tree_size += is_new;
                 e = end;
             }

@@ -9,9 +9,9 @@
 
 namespace taut
 {
-/** A set of voxels, named by keys of 21 bits a coordinate as voxelKey() makes them. 4 x 4 x 4 voxels
- * share an entry, a bit each: points and rays stay within such a block for a while, and a surface
- * takes a sixth of the memory that a set of keys would take. */
+/** A set of voxels, named by keys of 21 bits a coordinate as voxelKey() makes them. 4 x 4 x 4
+ * voxels share an entry, a bit each: points and rays stay within such a block for a while, and a
+ * surface takes a sixth of the memory that a set of keys would take. */
 class VoxelSet
 {
  public:

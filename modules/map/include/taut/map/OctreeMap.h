@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "taut/core/Map.h"
+#include "taut/core/VoxelSet.h"
 #include "taut/map/StatisticsTree.h"
 
 namespace taut
@@ -28,7 +29,7 @@ struct OctreeMapConfig
     double min_spread = 0.2;      //!< the same as a share of the half edge of the window
     double gate = 0.8;            //!< [m] largest distance from a surface to be matched with it
     double min_sigma = 0.005;     //!< [m] no surface is believed to be thinner
-    double leaf_capacity = 1000;  //!< points after which a leaf is full and stays as it is
+    double ripe_points = 200;     //!< in a node of 4 leaf_size, which then takes one point in four
     bool lines = false;           //!< match thin, long windows as lines
     double window_radius = 100;   //!< [m] half edge of the cube around the body that is kept
 };
@@ -137,6 +138,7 @@ class OctreeMap : public Map
     bool isLine(const Window& window) const;
     static bool isOnSideOf(const Window& window, const MapPoint& query);
     unsigned blockDepth() const;
+    double weightOf(const octomap::OcTreeKey& leaf, std::uint32_t point) const;
 
     std::unique_ptr<StatisticsTree> tree_;
     mutable std::vector<Level> levels_;  // a cache: its content follows from the tree
@@ -145,6 +147,7 @@ class OctreeMap : public Map
     mutable std::vector<Lookup> lookups_;  // a query and level each
     mutable std::uint32_t lookups_insertion_ = 0;
     std::uint32_t insertions_ = 0;
+    VoxelSet ripe_;  //!< nodes that hold enough to take a share of what comes, for all of it
     tsl::robin_set<std::uint64_t, KeyHash> blocks_;  // coarse nodes that exist, for slide()
     Vector3d last_center_ = Vector3d::Constant(1e300);
     /** Where the keys begin [m]: octomap names 2^16 leaves a side, which moves with the body. */

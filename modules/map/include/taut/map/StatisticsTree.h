@@ -23,7 +23,9 @@ struct PointStatistics
     Eigen::Matrix<double, 6, 1> moments = Eigen::Matrix<double, 6, 1>::Zero();  // xx xy xz yy yz zz
     Eigen::Vector3d views = Eigen::Vector3d::Zero();  //!< sum of the unit vectors to the sensor
 
-    void add(const Eigen::Vector3d& p, const Eigen::Vector3d& view = Eigen::Vector3d::Zero());
+    void add(
+        const Eigen::Vector3d& p, const Eigen::Vector3d& view = Eigen::Vector3d::Zero(),
+        double weight = 1);
     void add(const PointStatistics& other);
     Eigen::Vector3d mean() const { return sum / count; }
     /** Sum of (p - mean)(p - mean)^T. */
@@ -109,13 +111,21 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
      * are neighbours in the tree. */
     static std::uint64_t wayTo(const octomap::OcTreeKey& key);
 
+    /** A node at this depth is ripe when it holds this many points. */
+    struct Ripeness
+    {
+        unsigned depth = 0;
+        double points = 0;
+    };
+
     /** Adds to leaves, and to their ancestors from the given depth down, what `put(index,
-     * statistics)` adds for each entry; a leaf that holds `capacity` points already stays as it is.
-     * Every node is visited once, in the order of the entries' ways: the sums do not depend on
-     * threads. */
+     * statistics)` adds for each entry. Every node is visited once, in the order of the entries'
+     * ways: the sums do not depend on threads. Gives the index of an entry of each node that it
+     * leaves ripe. */
     template <class Put>
-    void add(
-        Entries entries, unsigned from_depth, double capacity, const Put& put, Executor& executor);
+    std::vector<std::uint32_t> add(
+        Entries entries, unsigned from_depth, const Ripeness& ripeness, const Put& put,
+        Executor& executor);
 
  private:
     /** A subtree whose nodes have statistics, and the entries that belong to it. */
@@ -123,14 +133,15 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
     {
         StatisticsNode* node = nullptr;
         const Entry *begin = nullptr, *end = nullptr;
-        std::size_t created = 0;  //!< nodes
+        std::size_t created = 0;          //!< nodes
+        std::vector<std::uint32_t> ripe;  //!< an index of each ripe node
     };
     static void sort(Entries& entries, Executor& executor);
     std::vector<Subtree> subtreesOf(const Entries& entries, unsigned depth);
     template <class Put>
     PointStatistics fill(
-        StatisticsNode& node, unsigned depth, const Entry* begin, const Entry* end, double capacity,
-        const Put& put, std::size_t& created);
+        StatisticsNode& node, unsigned depth, const Entry* begin, const Entry* end,
+        const Ripeness& ripeness, const Put& put, Subtree& whole);
     const Entry* childEnd(const Entry* begin, const Entry* end, unsigned depth) const;
     unsigned childOf(const Entry& entry, unsigned depth) const
     {
@@ -139,10 +150,11 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
 };
 
 template <class Put>
-void StatisticsTree::add(
-    Entries entries, unsigned from_depth, double capacity, const Put& put, Executor& executor)
+std::vector<std::uint32_t> StatisticsTree::add(
+    Entries entries, unsigned from_depth, const Ripeness& ripeness, const Put& put,
+    Executor& executor)
 {
-    if (entries.empty()) return;
+    if (entries.empty()) return {};
     sort(entries, executor);
     std::vector<Subtree> subtrees = subtreesOf(entries, from_depth);
     executor.forChunks(
@@ -152,27 +164,38 @@ void StatisticsTree::add(
             for (std::size_t i = begin; i < end; i++)
             {
                 Subtree& s = subtrees[i];
-                fill(*s.node, from_depth, s.begin, s.end, capacity, put, s.created);
+                fill(*s.node, from_depth, s.begin, s.end, ripeness, put, s);
             }
         });
-    for (const Subtree& s : subtrees) tree_size += s.created;
+    std::vector<std::uint32_t> ripe;
+    for (const Subtree& s : subtrees)
+    {
+        tree_size += s.created;
+        ripe.insert(ripe.end(), s.ripe.begin(), s.ripe.end());
+    }
     size_changed = true;
+    return ripe;
 }
 
 template <class Put>
 PointStatistics StatisticsTree::fill(
-    StatisticsNode& node, unsigned depth, const Entry* begin, const Entry* end, double capacity,
-    const Put& put, std::size_t& created)
+    StatisticsNode& node, unsigned depth, const Entry* begin, const Entry* end,
+    const Ripeness& ripeness, const Put& put, Subtree& whole)
 {
+    const std::uint32_t first = begin->index;
     PointStatistics added;
     if (depth == tree_depth)
     {
-        if (node.statistics().count < capacity)
-            for (const Entry* e = begin; e != end; ++e) put(e->index, added);
+        for (const Entry* e = begin; e != end; ++e) put(e->index, added);
     }
     else
     {
-        std::array<Subtree, 8> below;
+        struct Branch
+        {
+            StatisticsNode* node;
+            const Entry *begin, *end;
+        };
+        std::array<Branch, 8> below;
         std::size_t children = 0;
         while (begin != end)
         {
@@ -180,18 +203,20 @@ PointStatistics StatisticsTree::fill(
             bool is_new = false;
             StatisticsNode& child = node.makeChild(childOf(*begin, depth), is_new);
             child.prefetch();
-            created += is_new;
+            whole.created += is_new;
             below[children++] = {&child, begin, next};
             begin = next;
         }
         for (std::size_t i = 0; i < children; i++)
         {
             if (i + 1 < children) below[i + 1].node->prefetchChildren();
-            const Subtree& s = below[i];
-            added.add(fill(*s.node, depth + 1, s.begin, s.end, capacity, put, created));
+            const Branch& b = below[i];
+            added.add(fill(*b.node, depth + 1, b.begin, b.end, ripeness, put, whole));
         }
     }
     node.statistics().add(added);
+    if (depth == ripeness.depth && node.statistics().count >= ripeness.points)
+        whole.ripe.push_back(first);
     return added;
 }
 }  // namespace taut
