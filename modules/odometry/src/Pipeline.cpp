@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+
+#include "StartInMotion.h"
 
 namespace taut
 {
@@ -18,52 +21,13 @@ std::string format(const char* text, double value)
 constexpr double kImuGap = 0.1;    // [s] worth a warning
 constexpr double kLidarGap = 0.5;  // [s]
 
-// Scans that a start in motion looks at, and how often.
-constexpr std::size_t kBootstrapScans = 10;
+// Passes over the first scans of a start in motion, and what of their outcome is worth a warning.
 constexpr int kBootstrapPasses = 12;
-constexpr double kSettledVelocity = 0.02;  // [m/s] change by a pass
-constexpr double kSettledTilt = 0.003;     // [rad]
-constexpr double kUnsettled = 20;          // times as much is worth a warning, and
-constexpr double kWrongGravity = 1.0;      // [m/s^2] off what it is on Earth
+constexpr double kUnsettled = 20;      // changes that are negligible
+constexpr double kWrongGravity = 1.0;  // [m/s^2] off what it is on Earth
+constexpr double kWorse = 1.3;         // misfit of a pass to that of the one before
+constexpr double kNoBetter = 0.5;      // change by a pass to that by the one before
 
-/** What the body did when the first scan ended, in the world frame of the results. */
-struct StartOfMotion
-{
-    Vector3d velocity, gravity;
-};
-
-/** From the LiDAR's poses and the IMU's integrals: the positions are p_0 + v_0 t + (double integral
- * of R a) - 1/2 g t^2, linear in p_0, v_0 and g. */
-StartOfMotion startOfMotion(const std::vector<ScanResult>& results)
-{
-    // The pose after the next scan is better than the one before it.
-    const auto poseOf = [&](std::size_t k)
-    {
-        return k + 1 < results.size() ? results[k + 1].previous.T_world_imu
-                                      : results[k].estimate.state.T_world_imu;
-    };
-    Matrix3d normal = Matrix3d::Zero();
-    Matrix3d right = Matrix3d::Zero();
-    Vector3d single = Vector3d::Zero(), twice = Vector3d::Zero();  // integrals of R a
-    double t = 0;
-    for (std::size_t k = 0; k < results.size(); k++)
-    {
-        if (k > 0)
-        {
-            const Matrix3d R = poseOf(k).R;
-            const Motion& m = results[k].motion;
-            const double dt = results[k].duration;
-            twice += single * dt - R * (m.beta * dt + m.alpha);
-            single -= R * m.beta;
-            t += dt;
-        }
-        const Vector3d row(1, t, -0.5 * t * t);
-        normal += row * row.transpose();
-        right += row * (poseOf(k).p - twice).transpose();
-    }
-    const Matrix3d solution = normal.ldlt().solve(right);
-    return {solution.row(1).transpose(), solution.row(2).transpose()};
-}
 }  // namespace
 
 Pipeline::Pipeline(
@@ -193,42 +157,48 @@ void Pipeline::bootstrap()
 {
     // In motion, the first scan is undistorted with an unknown velocity and makes a wrong map, and
     // the mean specific force is not gravity. The scans after it tell both: start again with what
-    // they tell, until map and motion agree.
+    // they tell, as well known as it still changes, until map and motion agree.
     bootstrapped_ = true;
-    Initialization start = *initialization_;
-    double change = 0;         // by the last pass, in what is negligible
-    double gravity_error = 0;  // [m/s^2] seen by the last pass
-    for (int pass = 0; pass < kBootstrapPasses && (pass == 0 || change > 1); pass++)
+    Initialization start = *initialization_, widened = start, chosen = start;
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    double last_misfit = kUnknown, last_change = kUnknown, best = kUnknown;
+    double change = 0;         // by the chosen pass, in what is negligible
+    double gravity_error = 0;  // [m/s^2] seen by the chosen pass
+    bool sharpen = true;
+    for (int pass = 0; pass < kBootstrapPasses; pass++)
     {
         const std::vector<ScanResult> results = tryStart(start);
         if (results.size() < 2) break;
-        NavState& x = start.estimate.state;
-        const Vector3d& assumed = results[0].estimate.state.v_world;
-        Vector3d velocity = results[1].previous.v_world;
-        Eigen::Quaterniond level = Eigen::Quaterniond::Identity();
-        if (results.size() == kBootstrapScans)
+        const Revision revision = revisionOf(results);
+        const double misfit = misfitOf(results);
+        if (sharpen && misfit > kWorse * last_misfit && revision.change() > kNoBetter * last_change)
         {
-            const StartOfMotion seen = startOfMotion(results);
-            velocity = seen.velocity;
-            // Without an IMU, level is what the first scan says, and its "gravity" is acceleration.
-            if (withImu())
-            {
-                level = Eigen::Quaterniond::FromTwoVectors(seen.gravity, kGravityWorld);
-                gravity_error = std::abs(seen.gravity.norm() - kGravityWorld.norm());
-            }
+            // Known too well too early, false matches agree with each other.
+            sharpen = false;
+            start = widened;
+            continue;
         }
-        change = std::max(
-            (velocity - assumed).norm() / kSettledVelocity,
-            Eigen::AngleAxisd(level).angle() / kSettledTilt);
-        x.v_world = level * Vector3d(x.v_world + velocity - assumed);
-        x.T_world_imu.R = level * x.T_world_imu.R;
+        last_misfit = misfit;
+        last_change = revision.change();
+        const double merit = misfit * std::max(1.0, revision.change());
+        if (merit < best)
+        {
+            best = merit;
+            chosen = start;
+            change = revision.change();
+            gravity_error = revision.gravity_error;
+        }
+        if (revision.change() <= 1) break;
+        widened.estimate.state = revised(start.estimate.state, revision);
+        start = widened;
+        if (sharpen) start.estimate.covariance = sharpened(widened.estimate.covariance, revision);
     }
     if ((change > kUnsettled || gravity_error > kWrongGravity) && warn_)
         warn_(
-            {start.estimate.state.t, "start_unsettled",
+            {chosen.estimate.state.t, "start_unsettled",
              "the first scans do not agree on velocity and gravity at the start: the beginning is "
              "less accurate"});
-    odometry_.start(start, withImu());
+    odometry_.start(chosen, withImu());
 }
 
 void Pipeline::process(const Scan& scan)

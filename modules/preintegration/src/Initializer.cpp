@@ -57,7 +57,8 @@ void InitializationConfig::declare(ConfigSection& s)
     s.key("max_accel_change", max_accel_change, kPositive, "m/s^2, between means of windows");
     s.key("max_gyro_bias", max_gyro_bias, kPositive, "rad/s, a higher steady rate is motion");
     s.key("gravity_tolerance", gravity_tolerance, kPositive, "m/s^2, mean specific force to 9.81");
-    s.key("sway_lever", sway_lever, kPositive, "m, a body at rest moves by this times its rotation");
+    s.key(
+        "sway_lever", sway_lever, kPositive, "m, a body at rest moves by this times its rotation");
     s.key("min_sway", min_sway, kPositive, "m, and at least");
     s.key("max_sway", max_sway, kPositive, "m, and at most: after a rest cut short");
     if (min_sway > max_sway) throw ConfigError(s.path() + ": min_sway exceeds max_sway");
