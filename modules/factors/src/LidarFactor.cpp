@@ -9,7 +9,8 @@ namespace taut
 {
 namespace
 {
-constexpr std::size_t kChunk = 3;             // intervals between nodes
+constexpr std::size_t kChunk = 3;  // intervals between nodes
+constexpr std::size_t kPointChunk = 512;
 constexpr Duration kNodeSpacing = 5'000'000;  // [ns] between exact derivatives of the path
 constexpr int kPathSize = 2 * NavState::kSize;
 
@@ -98,18 +99,23 @@ void LidarFactor::setCorrespondences(
 {
     correspondences_ = correspondences;
     predicted_variance_.assign(correspondences.size(), 0);
-    const SampledPath poses = sampled(path);
-    for (std::size_t i = 0; i < correspondences.size(); i++)
-    {
-        if (correspondences[i].surface == Surface::None) continue;
-        const Vector3d x = features_.points[i].position.cast<double>();
-        const auto P = projection(correspondences[i]);
-        for (int k = 0; k < P.rows(); k++)
+    const Placed& at = placed(path);
+    executor_.forChunks(
+        correspondences.size(), kPointChunk,
+        [&](std::size_t, std::size_t begin, std::size_t end)
         {
-            const PoseRow J = poseDerivative(P.row(k), x, poses.poseAt(timeOf(i)));
-            predicted_variance_[i] += J.dot(predicted * J) / static_cast<double>(P.rows());
-        }
-    }
+            for (std::size_t i = begin; i < end; i++)
+            {
+                if (correspondences[i].surface == Surface::None) continue;
+                const Vector3d x = features_.points[i].position.cast<double>();
+                const auto P = projection(correspondences[i]);
+                for (int k = 0; k < P.rows(); k++)
+                {
+                    const PoseRow J = poseDerivative(P.row(k), x, at.poses[i]);
+                    predicted_variance_[i] += J.dot(predicted * J) / static_cast<double>(P.rows());
+                }
+            }
+        });
     measureSurprise(path, balance);
 }
 
@@ -129,23 +135,30 @@ void LidarFactor::measureSurprise(const SweepPath& path, double balance)
     surprise_ = std::max(1.0, *middle / kMedianOfChi2);
 }
 
-SampledPath LidarFactor::sampled(const SweepPath& path) const
+const LidarFactor::Placed& LidarFactor::placed(const SweepPath& path) const
 {
-    if (features_.points.empty()) return {path, features_.stamp, features_.stamp};
-    return {path, timeOf(0), timeOf(features_.points.size() - 1)};
-}
-
-std::vector<Vector3d> LidarFactor::undistort(const SweepPath& path) const
-{
-    const SampledPath poses = sampled(path);
-    std::vector<Vector3d> world(features_.points.size());
-    for (std::size_t i = 0; i < world.size(); i++)
-        world[i] = poses.poseAt(timeOf(i)) * Vector3d(features_.points[i].position.cast<double>());
-    return world;
+    const std::size_t n = features_.points.size();
+    if (n == 0 || placed_.revision == path.revision()) return placed_;
+    const SampledPath sampled(path, timeOf(0), timeOf(n - 1));
+    placed_.poses.resize(n);
+    placed_.points.resize(n);
+    executor_.forChunks(
+        n, kPointChunk,
+        [&](std::size_t, std::size_t begin, std::size_t end)
+        {
+            for (std::size_t i = begin; i < end; i++)
+            {
+                placed_.poses[i] = sampled.poseAt(timeOf(i));
+                placed_.points[i] =
+                    placed_.poses[i] * Vector3d(features_.points[i].position.cast<double>());
+            }
+        });
+    placed_.revision = path.revision();
+    return placed_;
 }
 
 LidarFactor::Interval LidarFactor::linearizeInterval(
-    const SampledPath& poses, double balance, Time begin) const
+    const Placed& at, double balance, Time begin) const
 {
     Interval out;
     const auto first = std::lower_bound(
@@ -156,10 +169,9 @@ LidarFactor::Interval LidarFactor::linearizeInterval(
     {
         const Correspondence& c = correspondences_[i];
         if (c.surface == Surface::None) continue;
-        const Pose pose = poses.poseAt(timeOf(i));
         const Vector3d x = features_.points[i].position.cast<double>();
         const auto P = projection(c);
-        const Vector3d d = pose * x - c.point;
+        const Vector3d d = at.points[i] - c.point;
         double r2 = 0;
         for (int k = 0; k < P.rows(); k++) r2 += square(P.row(k).dot(d));
 
@@ -170,7 +182,7 @@ LidarFactor::Interval LidarFactor::linearizeInterval(
         const double share =
             static_cast<double>(timeOf(i) - begin) / static_cast<double>(kNodeSpacing);
         for (int k = 0; k < P.rows(); k++)
-            out.add(poseDerivative(P.row(k), x, pose), P.row(k).dot(d), w, share);
+            out.add(poseDerivative(P.row(k), x, at.poses[i]), P.row(k).dot(d), w, share);
     }
     return out;
 }
@@ -182,7 +194,7 @@ double LidarFactor::linearize(
     const Time begin = timeOf(0);
     const auto count =
         static_cast<std::size_t>((timeOf(features_.points.size() - 1) - begin) / kNodeSpacing + 1);
-    const SampledPath poses = sampled(path);
+    const Placed& at = placed(path);
     std::vector<Interval> intervals(count);
     Eigen::MatrixXd J(6 * (count + 1), kPathSize);  // derivative of the pose at each node
     executor_.forChunks(
@@ -196,7 +208,7 @@ double LidarFactor::linearize(
                 const Time node = begin + static_cast<Duration>(i) * kNodeSpacing;
                 path.poseAt(node, hint, at_node);
                 J.middleRows<6>(static_cast<Eigen::Index>(6 * i)) = at_node;
-                if (i < count) intervals[i] = linearizeInterval(poses, balance, node);
+                if (i < count) intervals[i] = linearizeInterval(at, balance, node);
             }
         });
 
@@ -205,14 +217,14 @@ double LidarFactor::linearize(
     double cost = 0;
     for (std::size_t i = 0; i < count; i++)
     {
-        const auto at = static_cast<Eigen::Index>(6 * i);
+        const auto row = static_cast<Eigen::Index>(6 * i);
         const Interval& in = intervals[i];
-        HJ.middleRows<6>(at) +=
-            in.H_begin * J.middleRows<6>(at) + in.H_both * J.middleRows<6>(at + 6);
-        HJ.middleRows<6>(at + 6) +=
-            in.H_both * J.middleRows<6>(at) + in.H_end * J.middleRows<6>(at + 6);
-        g.segment<6>(at) += in.g_begin;
-        g.segment<6>(at + 6) += in.g_end;
+        HJ.middleRows<6>(row) +=
+            in.H_begin * J.middleRows<6>(row) + in.H_both * J.middleRows<6>(row + 6);
+        HJ.middleRows<6>(row + 6) +=
+            in.H_both * J.middleRows<6>(row) + in.H_end * J.middleRows<6>(row + 6);
+        g.segment<6>(row) += in.g_begin;
+        g.segment<6>(row + 6) += in.g_end;
         cost += in.cost;
     }
     const ProblemMatrix H = J.transpose() * HJ;
@@ -224,14 +236,12 @@ double LidarFactor::linearize(
 template <class Body>
 void LidarFactor::forResiduals(const SweepPath& path, double balance, const Body& body) const
 {
-    const SampledPath poses = sampled(path);
+    const Placed& at = placed(path);
     for (std::size_t i = 0; i < correspondences_.size(); i++)
     {
         const Correspondence& c = correspondences_[i];
         if (c.surface == Surface::None) continue;
-        const Vector3d y =
-            poses.poseAt(timeOf(i)) * Vector3d(features_.points[i].position.cast<double>());
-        const Vector3d d = y - c.point;
+        const Vector3d d = at.points[i] - c.point;
         const double along = c.direction.dot(d);
         const double r2 =
             c.surface == Surface::Plane ? along * along : d.squaredNorm() - along * along;

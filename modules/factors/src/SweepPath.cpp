@@ -1,5 +1,7 @@
 #include "taut/factors/SweepPath.h"
 
+#include <atomic>
+
 namespace taut
 {
 namespace
@@ -59,6 +61,8 @@ Vector3d SweepPath::aprioriPosition(double d, const Motion& motion) const
 
 void SweepPath::setStates(const NavState& previous, const NavState& current)
 {
+    static std::atomic<std::uint64_t> revisions{0};
+    revision_ = ++revisions;
     previous_ = previous;
     current_ = current;
     if (!isIterated(mode_)) return;

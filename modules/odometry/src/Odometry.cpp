@@ -131,7 +131,7 @@ void Odometry::estimate(
     for (int i = 0; i < config.max_iterations && !config_.map->empty(); i++)
     {
         Stopwatch watch;
-        const std::vector<Vector3d> world = lidar.undistort(path);
+        const std::vector<Vector3d>& world = lidar.undistort(path);
         for (std::size_t j = 0; j < world.size(); j++)
             queries[j] = {
                 world[j], features.points[j].kind,

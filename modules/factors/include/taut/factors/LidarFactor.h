@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "taut/core/Correspondence.h"
@@ -11,8 +12,6 @@
 
 namespace taut
 {
-class SampledPath;
-
 struct LidarNoiseConfig
 {
     /** Noise of a residual besides what the map says of the surface. The balance scales both. */
@@ -47,8 +46,12 @@ class LidarFactor
         const std::vector<Correspondence>& correspondences, const SweepPath& path,
         const PoseCovariance& predicted, double balance);
 
-    /** Undistorted world positions of all features, in their order. */
-    std::vector<Vector3d> undistort(const SweepPath& path) const;
+    /** Undistorted world positions of all features, in their order; valid until the factor is asked
+     * about another path. */
+    const std::vector<Vector3d>& undistort(const SweepPath& path) const
+    {
+        return placed(path).points;
+    }
 
     /** Adds to the 30 x 30 Hessian and gradient of (x_{k-1}, x_k); returns the cost,
      * 1/2 sum L rho(|r|^2 / (L s^2)), s = balance sigma, where L = 1 + (prediction's variance) /
@@ -65,8 +68,15 @@ class LidarFactor
  private:
     struct Interval;
     struct Noise;
-    SampledPath sampled(const SweepPath& path) const;
-    Interval linearizeInterval(const SampledPath& poses, double balance, Time begin) const;
+    /** The features where a path takes them. */
+    struct Placed
+    {
+        std::uint64_t revision = 0;    //!< of the path
+        std::vector<Pose> poses;       //!< of the body when each was seen
+        std::vector<Vector3d> points;  //!< world frame
+    };
+    const Placed& placed(const SweepPath& path) const;
+    Interval linearizeInterval(const Placed& placed, double balance, Time begin) const;
     Time timeOf(std::size_t i) const { return features_.stamp + features_.points[i].offset; }
     Noise noiseOf(std::size_t i, double balance) const;
     void measureSurprise(const SweepPath& path, double balance);
@@ -80,5 +90,6 @@ class LidarFactor
     std::vector<Correspondence> correspondences_;
     std::vector<double> predicted_variance_;  // [m^2] of each residual
     double surprise_ = 1;                     // squared, of the median residual
+    mutable Placed placed_;                   // by the last path: asked for several times
 };
 }  // namespace taut

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "taut/core/Config.h"
@@ -43,6 +44,9 @@ class SweepPath
     /** Moves both ends. */
     void setStates(const NavState& previous, const NavState& current);
 
+    /** Another number whenever the path changes; copies share it until they change. */
+    std::uint64_t revision() const { return revision_; }
+
     /** The pose at time t. `hint` as in PreintegratedImu::at(). */
     Pose poseAt(Time t, std::size_t& hint) const;
 
@@ -64,6 +68,7 @@ class SweepPath
     void rotationJacobian(const Local& at, const MotionDelta& motion, PathJacobian& J) const;
     void positionJacobian(const Local& at, const MotionDelta& motion, PathJacobian& J) const;
 
+    std::uint64_t revision_ = 0;
     Undistortion mode_;
     const PreintegratedImu& imu_;
     PreintegratedImu chain_;  // for the current biases
