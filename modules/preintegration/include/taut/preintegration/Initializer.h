@@ -33,7 +33,7 @@ struct InitializationConfig
     // How far a body at rest moves: a lever times the furthest that it turns, within bounds. A rest
     // that motion cuts short may end in a part of that motion: it sways as far as any.
     double sway_lever = 1.0;  //!< [m]
-    double min_sway = 1e-3;   //!< [m]
+    double min_sway = 2e-3;   //!< [m]
     double max_sway = 0.02;   //!< [m]
 
     // Prior of the biases, one standard deviation.
