@@ -32,6 +32,19 @@ const Streams& hand()
     return streams;
 }
 
+/** The same from the midst of the motion on. */
+Streams handInMotion()
+{
+    Streams moving = hand();
+    const Time begin = moving.recording.start + fromSeconds(2.2);
+    moving.imu.erase(
+        std::remove_if(
+            moving.imu.begin(), moving.imu.end(), [&](const ImuSample& s) { return s.t < begin; }),
+        moving.imu.end());
+    moving.scans.erase(moving.scans.begin(), moving.scans.begin() + 22);
+    return moving;
+}
+
 struct Outcome
 {
     WarningLog log;
@@ -331,13 +344,7 @@ TEST(Pipeline, AlreadyUndistortedScansAreNotUndistortedAgain)
 
 TEST(Pipeline, AStartInMotionIsReportedAndSurvived)
 {
-    Streams moving = hand();
-    const Time begin = moving.recording.start + fromSeconds(2.2);
-    moving.imu.erase(
-        std::remove_if(
-            moving.imu.begin(), moving.imu.end(), [&](const ImuSample& s) { return s.t < begin; }),
-        moving.imu.end());
-    moving.scans.erase(moving.scans.begin(), moving.scans.begin() + 22);
+    const Streams moving = handInMotion();
     const Outcome done = run(moving);
     EXPECT_FALSE(done.initialization->at_rest);
     EXPECT_EQ(done.log.count("no_rest"), 1u);
@@ -368,18 +375,25 @@ TEST(Pipeline, SteadyMotionThatTheImuTakesForARestIsFoundByTheLidar)
     EXPECT_EQ(run(hand()).log.count("rest_left"), 0u);
 }
 
+TEST(Pipeline, AStartInMotionThatSeesNothingFollowsTheImu)
+{
+    Streams blind = handInMotion();
+    for (Scan& scan : blind.scans) scan.points.resize(5);
+    const Outcome done = run(blind);
+    EXPECT_GE(done.results.size(), blind.scans.size() - 1);
+    for (const ScanResult& r : done.results)
+    {
+        EXPECT_FALSE(r.lidar_used);
+        EXPECT_TRUE(r.estimate.state.T_world_imu.p.allFinite());
+    }
+}
+
 TEST(Pipeline, AStartInMotionThatDoesNotSettleIsReported)
 {
     // The IMU turns and falls otherwise than the LiDAR moves.
-    Streams torn = hand();
-    const Time begin = torn.recording.start + fromSeconds(2.2);
-    torn.imu.erase(
-        std::remove_if(
-            torn.imu.begin(), torn.imu.end(), [&](const ImuSample& s) { return s.t < begin; }),
-        torn.imu.end());
-    torn.scans.erase(torn.scans.begin(), torn.scans.begin() + 22);
+    Streams torn = handInMotion();
     for (ImuSample& s : torn.imu)
-        s.accel += 20 * std::sin(5 * toSeconds(s.t - begin)) * Vector3d(1, 1, 0);
+        s.accel += 20 * std::sin(5 * toSeconds(s.t - torn.imu.front().t)) * Vector3d(1, 1, 0);
     EXPECT_EQ(run(torn).log.count("start_unsettled"), 1u);
 }
 

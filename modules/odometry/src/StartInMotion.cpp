@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace taut
 {
@@ -96,12 +97,13 @@ NavState::Matrix sharpened(const NavState::Matrix& covariance, const Revision& r
 
 double misfitOf(const std::vector<ScanResult>& results)
 {
-    double cost = 0, matches = 1;
+    double cost = 0, matches = 0;
     for (const ScanResult& r : results)
     {
         cost += r.cost;
         if (r.lidar_used) matches += r.correspondences;
     }
-    return cost / square(matches);
+    // Scans that match nothing cost nothing, and say nothing.
+    return matches > 0 ? cost / square(matches) : std::numeric_limits<double>::infinity();
 }
 }  // namespace taut
