@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 
 #include "surfaces.h"
 
@@ -80,6 +82,79 @@ TEST(OctreeMap, MatchesTheLargestWindowThatIsAsFlatAsTheSmallest)
         exact += std::abs(c.direction.z()) > std::cos(0.5 * M_PI / 180);
     }
     EXPECT_GE(exact, 45);  // a few small windows are thinner by chance
+}
+
+namespace
+{
+/** Boards 0.5 m wide, every second one 5 cm higher, along x. */
+std::vector<MapPoint> boards(Random& random, int count, double noise)
+{
+    std::vector<MapPoint> points = floorAt(0, noise).planePoints(random, count, FeatureKind::Any);
+    for (MapPoint& p : points)
+        if (std::fmod(p.position.x() + 100, 1.0) > 0.5) p.position.z() += 0.05;
+    return points;
+}
+
+/** Points in the middle of boards. */
+std::vector<MapPoint> onBoards(int count, unsigned seed)
+{
+    Random random(seed);
+    std::vector<MapPoint> points = boards(random, 40 * count, 0);
+    const auto nearEdge = [](const MapPoint& p)
+    {
+        const double across = std::fmod(p.position.x() + 100, 0.5);
+        return across < 0.2 || across > 0.3 || p.position.head<2>().cwiseAbs().maxCoeff() > 3;
+    };
+    points.erase(std::remove_if(points.begin(), points.end(), nearEdge), points.end());
+    points.resize(static_cast<std::size_t>(count));
+    return points;
+}
+
+double worstDistance(const OctreeMap& map, const std::vector<MapPoint>& queries)
+{
+    std::vector<Correspondence> found;
+    map.match(queries, found, single);
+    double worst = 0;
+    for (std::size_t i = 0; i < queries.size(); i++)
+    {
+        EXPECT_EQ(found[i].surface, Surface::Plane);
+        const Vector3d d = queries[i].position - found[i].point;
+        worst = std::max(worst, std::abs(found[i].direction.dot(d)));
+    }
+    return worst;
+}
+}  // namespace
+
+TEST(OctreeMap, FindsTheScaleBelowOneThatIsAsThickAsTheNext)
+{
+    // Windows of 1 to 4 m all hold both heights: each is as thick as the larger one.
+    OctreeMap map;
+    Random random(7);
+    for (int scan = 0; scan < 20; scan++) map.insert(boards(random, 20000, 0.005), single);
+    EXPECT_LT(worstDistance(map, onBoards(200, 8)), 0.01);
+    for (unsigned more = 9; more < 20; more++)
+        EXPECT_LT(worstDistance(map, onBoards(50, more)), 0.01) << "learnt to look no further";
+}
+
+TEST(OctreeMap, ALargePlaneThatIsTrustedIsTheOneThatASearchFinds)
+{
+    OctreeMap map;
+    see(map, floorAt(1, 0.02));
+    Random random(5);
+    std::vector<MapPoint> queries;
+    for (int i = 0; i < 300; i++) queries.push_back({floorAt(1, 0).at(random, 0.5)});
+    const OctreeMap unasked(map);
+    for (int i = 0; i < 10; i++)
+    {
+        std::vector<Correspondence> trusted, searched;
+        std::shuffle(queries.begin(), queries.end(), std::mt19937(static_cast<unsigned>(i)));
+        map.match(queries, trusted, single);
+        OctreeMap(unasked).match(queries, searched, single);
+        int differ = 0;
+        for (std::size_t k = 0; k < queries.size(); k++)
+            differ += trusted[k].direction != searched[k].direction;
+        EXPECT_LE(differ, 15) << "a few small windows are thinner by chance";
+    }
 }
 
 TEST(OctreeMap, NearAStepSigmaTellsHowFarTheSurfaceMayBe)

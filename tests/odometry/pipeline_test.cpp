@@ -375,6 +375,42 @@ TEST(Pipeline, SteadyMotionThatTheImuTakesForARestIsFoundByTheLidar)
     EXPECT_EQ(run(hand()).log.count("rest_left"), 0u);
 }
 
+TEST(Pipeline, ASteadyTurnThatTheImuTakesForARestIsFoundByTheLidar)
+{
+    Recording turning;
+    turning.spin = 0.05;
+    const Outcome done = run({turning, turning.imu(), turning.scans()});
+    EXPECT_TRUE(done.initialization->at_rest) << "the IMU cannot know";
+    EXPECT_EQ(done.log.count("rest_left"), 1u);
+    EXPECT_LT(done.error(turning), 0.1);
+}
+
+TEST(Pipeline, ABodyThatRestsInFrontOfOneWallDoesNotSlipAlongIt)
+{
+    // What such a view seems to say of motion along the wall is noise.
+    Streams at_wall = hand();
+    at_wall.scans.erase(at_wall.scans.begin() + 12, at_wall.scans.end());
+    for (Scan& scan : at_wall.scans)
+    {
+        const Pose T = at_wall.recording.pose(0) * scan.T_imu_lidar;
+        const auto elsewhere = [&](const LidarPoint& p)
+        { return (T * Vector3d(p.position.cast<double>())).y() < 4.9; };
+        scan.points.erase(
+            std::remove_if(scan.points.begin(), scan.points.end(), elsewhere), scan.points.end());
+        ASSERT_GT(scan.points.size(), 300u);
+    }
+    const Outcome done = run(at_wall);
+    EXPECT_EQ(done.log.count("rest_left"), 0u);
+    ASSERT_EQ(done.results.size(), at_wall.scans.size());
+    const Pose begin = done.initialization->estimate.state.T_world_imu;
+    for (const ScanResult& r : done.results)
+    {
+        const Pose& pose = r.estimate.state.T_world_imu;
+        EXPECT_LT(pose.p.norm(), 0.003);
+        EXPECT_LT(logSO3(begin.R.transpose() * pose.R).norm(), 0.002);
+    }
+}
+
 TEST(Pipeline, AStartInMotionThatSeesNothingFollowsTheImu)
 {
     Streams blind = handInMotion();

@@ -17,6 +17,7 @@ struct Recording
     double rest = 1.5, duration = 5.0;             //!< [s] the motion begins after the rest
     double swing = 1.0;                            //!< of the motion: 1 is brisk, 0 none
     Vector3d drift{0, 0, 0};                       //!< [m/s] steady, from the start: no rest
+    double spin = 0;                               //!< [rad/s] about the vertical, the same
     double gyro_noise = 1e-3, accel_noise = 1e-2;  //!< densities
     Vector3d bias_gyro{0.004, -0.003, 0.002};
     Pose T_imu_lidar{expSO3({0.02, -0.01, 1.5}), {0.1, -0.05, 0.15}};
@@ -35,7 +36,8 @@ struct Recording
         const Vector3d turn(
             0.25 * std::sin(2.7 * u), 0.2 * std::sin(3.1 * u), 0.9 * std::sin(1.7 * u));
         const Matrix3d level = expSO3({0, -0.03, 0}) * expSO3({0.05, 0, 0});
-        return {level * expSO3(swing * turn), swing * p + s * drift};
+        const Matrix3d spun = expSO3({0, 0, s * spin});
+        return {spun * level * expSO3(swing * turn), swing * p + s * drift};
     }
 
     NavState truth(Time t) const

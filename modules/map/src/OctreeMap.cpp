@@ -79,6 +79,7 @@ void OctreeMap::clear()
     levels_.assign(static_cast<std::size_t>(config.scales), {});
     blocks_.clear();
     insertions_ = 0;
+    lots_ = 0;
     ripe_.clear();
     lookups_.clear();
     last_center_.setConstant(1e300);

@@ -12,6 +12,9 @@ namespace
 {
 constexpr std::uint32_t kMaxPatience = 15;  // insertions
 constexpr double kGrowth = 1.2;             // of a window's points, that it is computed anew
+constexpr double kDoubt = 3;                // deviations of the thickness of a smaller window
+constexpr std::uint8_t kTrials = 4;         // searches that a window needs to be trusted
+constexpr std::uint64_t kSpotCheck = 16;    // one search in so many does not trust
 constexpr double kSameView = 1e-3;          // squared, between iterations
 constexpr double kGrazing = 0.05;           // cosine to the normal
 }  // namespace
@@ -141,6 +144,12 @@ double OctreeMap::variance(const Window& window) const
     return std::max(window.thickness2, config.min_sigma * config.min_sigma);
 }
 
+double OctreeMap::largestVariance(const Window& window) const
+{
+    // The relative deviation of a variance from n - 3 residuals is sqrt(2 / (n - 3)).
+    return variance(window) * (1 + kDoubt * std::sqrt(2 / (window.count - 3)));
+}
+
 Correspondence OctreeMap::planeAt(const Vector3d& query, const Window& window) const
 {
     Correspondence c;
@@ -210,7 +219,7 @@ void OctreeMap::findWindows(const std::vector<MapPoint>& queries, int l, Executo
         });
 }
 
-void OctreeMap::advance(Search& search, const MapPoint& query, int l) const
+void OctreeMap::advance(Search& search, const MapPoint& query, int l, std::uint64_t lot) const
 {
     const auto& windows = levels_[static_cast<std::size_t>(l)].windows;
     const Window& w = windows[search.window];
@@ -230,18 +239,32 @@ void OctreeMap::advance(Search& search, const MapPoint& query, int l) const
     if (search.best_level < 0 || search.line)
     {
         if (plane)
+        {
             take(false);
+            search.first = search.window;
+            search.first_level = search.best_level;
+            search.trusts = !w.stepped && w.trials >= kTrials && lot % kSpotCheck != 0;
+            search.active = !search.trusts;
+        }
         else if (search.best_level < 0 && kind != FeatureKind::Plane && isLine(w))
             take(true);
         return;
     }
-    // A plane is at hand: a smaller window replaces it only if it is clearly thinner.
+    // A plane is at hand: a smaller window replaces it only if it is thinner beyond doubt. One that
+    // is not does not end the search: where a step runs through both, the next may lie beside it.
     const auto& best_windows = levels_[static_cast<std::size_t>(search.best_level)].windows;
     const double tolerance = config.scale_tolerance * config.scale_tolerance;
-    if (plane && variance(best_windows[search.best]) > tolerance * variance(w))
-        take(false);
-    else
-        search.active = false;
+    if (plane && variance(best_windows[search.best]) > tolerance * largestVariance(w)) take(false);
+}
+
+void OctreeMap::learnFrom(const Search& search) const
+{
+    if (search.first_level < 0) return;
+    Window& w = levels_[static_cast<std::size_t>(search.first_level)].windows[search.first];
+    if (search.best_level != search.first_level)
+        w.stepped = true;
+    else if (!search.trusts && w.trials < kTrials)
+        w.trials++;
 }
 
 bool OctreeMap::isSettled(const MapPoint& query, std::size_t i) const
@@ -273,7 +296,8 @@ void OctreeMap::match(
     }
     for (std::size_t i = 0; i < queries.size(); i++)
     {
-        if (isSettled(queries[i], i)) continue;
+        searches_[i].settled = isSettled(queries[i], i);
+        if (searches_[i].settled) continue;
         searches_[i] = {};
         searches_[i].kind = queries[i].kind;
         searches_[i].view = queries[i].view;
@@ -282,9 +306,13 @@ void OctreeMap::match(
     {
         findWindows(queries, level, executor);
         for (std::size_t i = 0; i < queries.size(); i++)
-            if (searches_[i].active) advance(searches_[i], queries[i], level);
+            if (searches_[i].active) advance(searches_[i], queries[i], level, mixBits(lots_++));
     }
-    for (Search& search : searches_) search.active = false;
+    for (Search& search : searches_)
+    {
+        if (!search.settled) learnFrom(search);
+        search.active = false;
+    }
     correspondences.assign(queries.size(), {});
     for (std::size_t i = 0; i < queries.size(); i++)
     {

@@ -18,7 +18,7 @@ namespace
  * correspondences, since an estimate takes its place: the kernel closes step by step. */
 constexpr double kStillPredicted = 0.25;
 
-/** A body that is this many sways from where it rests does not rest. */
+/** A body that is this many sways from how it rested does not rest. */
 constexpr double kRestLeft = 4;
 
 /** Adds the time since its last call to a stage. */
@@ -42,6 +42,16 @@ std::array<double, 3> eigenvaluesOf(const Matrix3d& information)
         Eigen::SelfAdjointEigenSolver<Matrix3d>(information, Eigen::EigenvaluesOnly).eigenvalues();
     return {e[0], e[1], e[2]};
 }
+
+/** How much of a displacement is along directions that the LiDAR tells better than the rest, which
+ * holds the body within sigma. */
+double seenOf(
+    const Vector3d& displacement, const NavState::Matrix& lidar_information, int part, double sigma)
+{
+    const Matrix3d told = lidar_information.block<3, 3>(part, part);
+    const Matrix3d both = told + Matrix3d::Identity() / square(sigma);
+    return (both.inverse() * told * displacement).norm();
+}
 }  // namespace
 
 Odometry::Odometry(const OdometryConfig& config, Executor& executor, WarningSink warn)
@@ -60,7 +70,7 @@ void Odometry::start(const Initialization& initialization, bool with_imu)
     rest_end_ = initialization.at_rest
                     ? previous_.state.t + fromSeconds(initialization.rest_duration)
                     : previous_.state.t;
-    rest_sway_ = initialization.sway;
+    rest_ = {previous_.state.T_world_imu, initialization.sway, initialization.sway_angle};
     noise_ = config_.imu_noise;
     if (config_.imu_noise_from_rest && initialization.at_rest)
     {
@@ -122,7 +132,7 @@ void Odometry::estimate(
     LidarFactor lidar(features, config_.lidar_noise, executor_);
     ScanProblem problem(previous_, motion, lidar, path, config);
     problem.useLidar(false);
-    problem.setRest(motion.end() <= rest_end_ ? rest_sway_ : 0);
+    if (motion.end() <= rest_end_) problem.setRest(rest_);
 
     std::vector<MapPoint> queries(features.points.size());
     std::vector<Correspondence> correspondences;
@@ -173,19 +183,25 @@ void Odometry::estimate(
     previous_ = {problem.current(), information};
     result.estimate.state = previous_.state;
     result.estimate.covariance = information.ldlt().solve(NavState::Matrix::Identity());
-    endRestIfLeft();
+    endRestIfLeft(lidar_information);
 }
 
-void Odometry::endRestIfLeft()
+void Odometry::endRestIfLeft(const NavState::Matrix& lidar_information)
 {
     // Steady motion is a rest to the IMU; the LiDAR knows better.
     const Time t = previous_.state.t;
-    const double moved = previous_.state.T_world_imu.p.norm();
-    if (t > rest_end_ || moved < kRestLeft * rest_sway_) return;
+    if (t > rest_end_) return;
+    const Pose left = rest_.T_world_imu.inverse() * previous_.state.T_world_imu;
+    const double moved =
+        seenOf(rest_.T_world_imu.R * left.p, lidar_information, NavState::kPosition, rest_.sway);
+    const double turned =
+        seenOf(logSO3(left.R), lidar_information, NavState::kRotation, rest_.turn);
+    if (moved < kRestLeft * rest_.sway && turned < kRestLeft * rest_.turn) return;
     rest_end_ = t;
     if (!warn_) return;
     std::ostringstream text;
-    text << "the LiDAR moves by " << 1e3 * moved << " mm while the IMU rests";
+    text << "the LiDAR moves by " << 1e3 * moved << " mm and " << turned
+         << " rad while the IMU rests";
     warn_({t, "rest_left", text.str()});
 }
 

@@ -96,18 +96,27 @@ double ScanProblem::addBiasPrior(ProblemMatrix& H, ProblemVector& g) const
 
 double ScanProblem::addRest(ProblemMatrix& H, ProblemVector& g) const
 {
-    const double w = 1 / square(rest_sway_);
-    const int row = dimension() - kN + NavState::kPosition;
-    H.diagonal().segment<3>(row).array() += w;
-    g.segment<3>(row) += w * current_.T_world_imu.p;
-    return 0.5 * w * current_.T_world_imu.p.squaredNorm();
+    const Pose& pose = current_.T_world_imu;
+    const Vector3d moved = pose.p - rest_.T_world_imu.p;
+    const double w_moved = 1 / square(rest_.sway);
+    const int position = dimension() - kN + NavState::kPosition;
+    H.diagonal().segment<3>(position).array() += w_moved;
+    g.segment<3>(position) += w_moved * moved;
+
+    const Vector3d turned = logSO3(rest_.T_world_imu.R.transpose() * pose.R);
+    const Matrix3d J = inverseRightJacobianSO3(turned);
+    const double w_turned = 1 / square(rest_.turn);
+    const int rotation = dimension() - kN + NavState::kRotation;
+    H.block<3, 3>(rotation, rotation) += w_turned * J.transpose() * J;
+    g.segment<3>(rotation) += w_turned * J.transpose() * turned;
+    return 0.5 * (w_moved * moved.squaredNorm() + w_turned * turned.squaredNorm());
 }
 
 double ScanProblem::addAllButLidar(ProblemMatrix& H, ProblemVector& g) const
 {
     double cost = addImu(H, g) + addBiasPrior(H, g);
     if (released()) cost += addPrior(H, g);
-    if (rest_sway_ > 0) cost += addRest(H, g);
+    if (rest_.sway > 0) cost += addRest(H, g);
     return cost;
 }
 

@@ -220,6 +220,7 @@ Initialization Initializer::fromRest() const
     Initialization init;
     init.rest_duration = seconds;
     init.sway = swayAtRest();
+    init.sway_angle = init.sway / config_.sway_lever;
     init.measured_noise = {};
     init.measured_noise.accel = std::sqrt(std::max(0.0, accel_variance.mean()) * dt);
     init.measured_noise.gyro = std::sqrt(std::max(0.0, gyro_variance.mean()) * dt);

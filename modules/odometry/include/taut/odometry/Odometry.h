@@ -63,7 +63,7 @@ class Odometry
         ScanResult& result);
     std::vector<Eigen::Vector3f> undistorted(
         const Scan& raw, Time begin, const SweepPath& path) const;
-    void endRestIfLeft();
+    void endRestIfLeft(const NavState::Matrix& lidar_information);
     void insert(const Scan& scan, const SweepPath& path, ScanResult& result);
     double balanceOf(const LidarFactor& lidar, const SweepPath& path, int matches) const;
 
@@ -73,8 +73,8 @@ class Odometry
     ImuNoise noise_;
     bool with_imu_ = true, started_ = false;
     NavPrior previous_;
-    Time rest_end_ = 0;     //!< the body does not move before
-    double rest_sway_ = 0;  //!< [m] but for this
+    RestPrior rest_;
+    Time rest_end_ = 0;  //!< the body rests until then
     Vector3d previous_rate_ = Vector3d::Zero();
 };
 }  // namespace taut

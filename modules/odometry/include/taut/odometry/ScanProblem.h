@@ -14,8 +14,16 @@ struct NavPrior
     NavState::Matrix information = NavState::Matrix::Identity();
 };
 
+/** Where a body rests, and how firmly (one standard deviation each). */
+struct RestPrior
+{
+    Pose T_world_imu;
+    double sway = 0;  //!< [m]; 0: nothing is known
+    double turn = 0;  //!< [rad] about any axis
+};
+
 /** The cost of one scan (paper, equation 17): IMU factor, LiDAR factors, absolute bias prior,
- * the origin while the body rests there and, where the previous state is released, its prior.
+ * the pose of the rest while the body rests and, where the previous state is released, its prior.
  * Unknowns: (x_{k-1}, x_k), or x_k alone. */
 class ScanProblem : public LeastSquaresProblem
 {
@@ -45,11 +53,10 @@ class ScanProblem : public LeastSquaresProblem
         balance_ = balance;
         linearized_ = false;
     }
-    /** The body is known to rest at t_k, no further from the origin than `sway` [m, one standard
-     * deviation]; 0: nothing is known. */
-    void setRest(double sway)
+    /** The body is known to rest at t_k. */
+    void setRest(const RestPrior& rest)
     {
-        rest_sway_ = sway;
+        rest_ = rest;
         linearized_ = false;
     }
     /** Without LiDAR the problem is prediction and prior alone. */
@@ -89,6 +96,6 @@ class ScanProblem : public LeastSquaresProblem
     bool linearized_ = false;                // at the current estimate, noise and correspondences
     double balance_ = 1;
     bool use_lidar_ = true;
-    double rest_sway_ = 0;
+    RestPrior rest_;
 };
 }  // namespace taut

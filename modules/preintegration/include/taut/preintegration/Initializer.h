@@ -54,6 +54,7 @@ struct Initialization
     bool at_rest = true;
     double rest_duration = 0;  //!< [s] of data used
     double sway = 0;           //!< [m] that the body is away from the origin while it rests there
+    double sway_angle = 0;     //!< [rad] that it is turned meanwhile
     ImuNoise measured_noise;   //!< white noise densities seen at rest; 0 if not at rest
 };
 
