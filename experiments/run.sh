@@ -52,7 +52,8 @@ plan() { # the jobs of a group, one a line
       done ;;
     recording) for name in hall_fast $(recordings); do echo "recording $name"; done ;;
     sequence)
-      for name in hall_violent corridor_walk forest_flight street_vehicle stairwell_walk hall_fast_rosette; do
+      for name in hall_violent corridor_walk corridor_narrow_view forest_flight street_vehicle stairwell_walk \
+        hall_fast_rosette; do
         echo "sequence $name"
       done ;;
     cost) for seed in $(seq "$seeds"); do for name in $(recordings | head -1); do echo "cost $name $seed"; done; done ;;

@@ -68,6 +68,23 @@ TEST_F(WalkWithFaults, IsFollowedToCentimetresUntilTheClocksJump)
     EXPECT_LT(points.median_scan, 0.02);
 }
 
+TEST(ACorridor, WithOneWallInViewIsFollowedAlongIt)
+{
+    // Mixed windows of wall and doors would tell of motion along the wall that there is not.
+    const TemporaryFolder folder;
+    const ProgramRun made = runProgram(
+        TAUT_SIMULATE,
+        "-q -c " TAUT_CONFIG "/scenarios/corridor_narrow_view.yaml -o " + (folder / "log.rawlog"));
+    ASSERT_EQ(made.exit_code, 0) << made.output;
+    const ProgramRun run = slam(folder / "log.rawlog", folder / "out", "");
+    EXPECT_THAT(run.output, testing::Not(testing::HasSubstr("[rest_left]")));
+    const AbsoluteError errors =
+        scoreTrajectory(readTum(folder / "log.gt.tum"), readTum(folder / "out/trajectory.tum"), {})
+            .absolute;
+    RecordProperty("ate_mm", std::to_string(1e3 * errors.position.rmse));
+    EXPECT_LT(errors.position.rmse, 0.04);
+}
+
 /** Scores of a drive that is recorded from its midst, at 13 m/s. */
 AbsoluteError ofADriveUnderWay(const std::string& settings)
 {
