@@ -40,6 +40,7 @@ OctreeMap::OctreeMap(const OctreeMap& other)
       config(other.config),
       tree_(std::make_unique<StatisticsTree>(*other.tree_)),
       levels_(other.levels_.size()),  // without the cache, which names the other's nodes
+      range_noise_(other.range_noise_),
       insertions_(other.insertions_),
       ripe_(other.ripe_),
       blocks_(other.blocks_),
@@ -79,7 +80,7 @@ void OctreeMap::clear()
     levels_.assign(static_cast<std::size_t>(config.scales), {});
     blocks_.clear();
     insertions_ = 0;
-    lots_ = 0;
+    range_noise_ = 0;
     ripe_.clear();
     lookups_.clear();
     last_center_.setConstant(1e300);

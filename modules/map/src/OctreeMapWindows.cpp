@@ -13,8 +13,8 @@ namespace
 constexpr std::uint32_t kMaxPatience = 15;  // insertions
 constexpr double kGrowth = 1.2;             // of a window's points, that it is computed anew
 constexpr double kDoubt = 3;                // deviations of the thickness of a smaller window
-constexpr std::uint8_t kTrials = 4;         // searches that a window needs to be trusted
-constexpr std::uint64_t kSpotCheck = 16;    // one search in so many does not trust
+constexpr double kThin = 0.1;               // quantile of the planes that tells the noise
+constexpr std::uint32_t kYoung = 30;        // insertions: a young map is as thick as it is wrong
 constexpr double kSameView = 1e-3;          // squared, between iterations
 constexpr double kGrazing = 0.05;           // cosine to the normal
 }  // namespace
@@ -150,6 +150,32 @@ double OctreeMap::largestVariance(const Window& window) const
     return variance(window) * (1 + kDoubt * std::sqrt(2 / (window.count - 3)));
 }
 
+bool OctreeMap::isThinAsNoise(const Window& w) const
+{
+    const double noise = std::max(config.min_sigma, range_noise_ * std::abs(w.normal.dot(w.view)));
+    return variance(w) <= config.scale_tolerance * config.scale_tolerance * noise * noise;
+}
+
+void OctreeMap::learnRangeNoise() const
+{
+    // Noise along the rays makes a plane as thick as it is, times the cosine of view and normal.
+    if (insertions_ < kYoung) return;
+    std::vector<double> noise;
+    noise.reserve(searches_.size());
+    for (const Search& s : searches_)
+    {
+        if (s.best_level < 0 || s.line) continue;
+        const Window& w = levels_[static_cast<std::size_t>(s.best_level)].windows[s.best];
+        const double cosine = std::abs(w.normal.dot(w.view));
+        if (cosine > kGrazing) noise.push_back(std::sqrt(variance(w)) / cosine);
+    }
+    if (noise.empty()) return;
+    const auto thin =
+        noise.begin() + static_cast<std::ptrdiff_t>(kThin * static_cast<double>(noise.size()));
+    std::nth_element(noise.begin(), thin, noise.end());
+    range_noise_ = *thin;
+}
+
 Correspondence OctreeMap::planeAt(const Vector3d& query, const Window& window) const
 {
     Correspondence c;
@@ -219,7 +245,7 @@ void OctreeMap::findWindows(const std::vector<MapPoint>& queries, int l, Executo
         });
 }
 
-void OctreeMap::advance(Search& search, const MapPoint& query, int l, std::uint64_t lot) const
+void OctreeMap::advance(Search& search, const MapPoint& query, int l) const
 {
     const auto& windows = levels_[static_cast<std::size_t>(l)].windows;
     const Window& w = windows[search.window];
@@ -228,6 +254,7 @@ void OctreeMap::advance(Search& search, const MapPoint& query, int l, std::uint6
         search.best = search.window;
         search.best_level = static_cast<std::int8_t>(l);
         search.line = line;
+        search.active = line || !isThinAsNoise(w);
     };
     if (w.count < config.min_points)
     {
@@ -239,13 +266,7 @@ void OctreeMap::advance(Search& search, const MapPoint& query, int l, std::uint6
     if (search.best_level < 0 || search.line)
     {
         if (plane)
-        {
             take(false);
-            search.first = search.window;
-            search.first_level = search.best_level;
-            search.trusts = !w.stepped && w.trials >= kTrials && lot % kSpotCheck != 0;
-            search.active = !search.trusts;
-        }
         else if (search.best_level < 0 && kind != FeatureKind::Plane && isLine(w))
             take(true);
         return;
@@ -255,16 +276,6 @@ void OctreeMap::advance(Search& search, const MapPoint& query, int l, std::uint6
     const auto& best_windows = levels_[static_cast<std::size_t>(search.best_level)].windows;
     const double tolerance = config.scale_tolerance * config.scale_tolerance;
     if (plane && variance(best_windows[search.best]) > tolerance * largestVariance(w)) take(false);
-}
-
-void OctreeMap::learnFrom(const Search& search) const
-{
-    if (search.first_level < 0) return;
-    Window& w = levels_[static_cast<std::size_t>(search.first_level)].windows[search.first];
-    if (search.best_level != search.first_level)
-        w.stepped = true;
-    else if (!search.trusts && w.trials < kTrials)
-        w.trials++;
 }
 
 bool OctreeMap::isSettled(const MapPoint& query, std::size_t i) const
@@ -296,8 +307,7 @@ void OctreeMap::match(
     }
     for (std::size_t i = 0; i < queries.size(); i++)
     {
-        searches_[i].settled = isSettled(queries[i], i);
-        if (searches_[i].settled) continue;
+        if (isSettled(queries[i], i)) continue;
         searches_[i] = {};
         searches_[i].kind = queries[i].kind;
         searches_[i].view = queries[i].view;
@@ -306,13 +316,10 @@ void OctreeMap::match(
     {
         findWindows(queries, level, executor);
         for (std::size_t i = 0; i < queries.size(); i++)
-            if (searches_[i].active) advance(searches_[i], queries[i], level, mixBits(lots_++));
+            if (searches_[i].active) advance(searches_[i], queries[i], level);
     }
-    for (Search& search : searches_)
-    {
-        if (!search.settled) learnFrom(search);
-        search.active = false;
-    }
+    for (Search& search : searches_) search.active = false;
+    learnRangeNoise();
     correspondences.assign(queries.size(), {});
     for (std::size_t i = 0; i < queries.size(); i++)
     {

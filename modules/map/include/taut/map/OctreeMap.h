@@ -36,12 +36,12 @@ struct OctreeMapConfig
 
 /** Local map in an octree whose nodes hold the statistics of their points at every scale. A query
  * is matched with the plane (or line) of the largest window around it that is as flat as the
- * smallest one: the scale at which the world is planar there. Where several searches found nothing
- * thinner inside a window, later ones trust it and look no further, but for spot checks. A window
- * is the cube of 2 x 2 x 2 nodes around the node corner nearest to the query, so that no query lies
- * near a window's edge, where a surface would be seen cut in two. A surface seen from one side is
- * not matched with queries seen from the other: both sides of a floor or a wall are surfaces of
- * their own. */
+ * smallest one: the scale at which the world is planar there. A plane no thicker than the noise
+ * along the rays makes it ends the search: what is thinner is so by chance. A window is the cube of
+ * 2 x 2 x 2 nodes around the node corner nearest to the query, so that no query lies near a
+ * window's edge, where a surface would be seen cut in two. A surface seen from one side is not
+ * matched with queries seen from the other: both sides of a floor or a wall are surfaces of their
+ * own. */
 class OctreeMap : public Map
 {
     DEFINE_MRPT_OBJECT(OctreeMap, taut)
@@ -75,8 +75,6 @@ class OctreeMap : public Map
         double thickness2 = 0;             //!< unbiased variance along the normal [m^2]
         double width2 = 0, length2 = 0;    //!< variances along the other two axes [m^2]
         double min_width2 = 0;             //!< [m^2] of this size of window
-        std::uint8_t trials = 0;           //!< searches that found nothing thinner inside
-        bool stepped = false;              //!< one found something: a step runs through it
         std::array<std::uint16_t, 3> corner{};
         std::array<StatisticsTree::Place, 8> places;  //!< of its nodes
     };
@@ -109,12 +107,9 @@ class OctreeMap : public Map
     struct Search
     {
         std::uint32_t best = kNoWindow, window = kNoWindow;
-        std::uint32_t first = kNoWindow;  //!< the largest plane
-        std::int8_t best_level = -1, first_level = -1;
+        std::int8_t best_level = -1;
         std::int8_t last_level = 127;  //!< the last one it looked at
         bool active = true, line = false;
-        bool settled = false;                 //!< the last match() knows already
-        bool trusts = false;                  //!< takes the largest plane for the thinnest, unseen
         FeatureKind kind = FeatureKind::Any;  //!< of the query
         Vector3d view = Vector3d::Zero();     //!< of the query
     };
@@ -137,12 +132,13 @@ class OctreeMap : public Map
     void compute(Window& window, const PointStatistics& statistics) const;
     void findWindows(const std::vector<MapPoint>& queries, int level, Executor& executor) const;
     bool isSettled(const MapPoint& query, std::size_t i) const;
-    void advance(Search& search, const MapPoint& query, int level, std::uint64_t lot) const;
-    void learnFrom(const Search& search) const;
+    void advance(Search& search, const MapPoint& query, int level) const;
     Correspondence planeAt(const Vector3d& query, const Window& window) const;
     Correspondence lineAt(const Vector3d& query, const Window& window) const;
     double variance(const Window& window) const;
     double largestVariance(const Window& window) const;
+    bool isThinAsNoise(const Window& window) const;
+    void learnRangeNoise() const;
     bool isPlane(const Window& window) const;
     bool isLine(const Window& window) const;
     static bool isOnSideOf(const Window& window, const MapPoint& query);
@@ -155,7 +151,7 @@ class OctreeMap : public Map
     mutable std::vector<Search> searches_;
     mutable std::vector<Lookup> lookups_;  // a query and level each
     mutable std::uint32_t lookups_insertion_ = 0;
-    mutable std::uint64_t lots_ = 0;  // drawn: who makes a spot check
+    mutable double range_noise_ = 0;  //!< [m] as the planes of the last match() show it
     std::uint32_t insertions_ = 0;
     VoxelSet ripe_;  //!< nodes that hold enough to take a share of what comes, for all of it
     tsl::robin_set<std::uint64_t, KeyHash> blocks_;  // coarse nodes that exist, for slide()
