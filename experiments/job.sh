@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # One job of run.sh: makes or finds a recording, runs all variants on it, leaves a line of CSV for each run.
 #   job.sh sweep PRIOR AXIS LEVEL SEED | job.sh recording NAME | job.sh sequence SCENARIO | job.sh cost NAME ROUND
+#   job.sh start PLACE LIDAR SEED
 # Environment: RESULTS, the folder of the results. What has a result is not run again.
 set -euo pipefail
 # shellcheck source=common.sh
@@ -76,6 +77,16 @@ case $group in
     variants="$ablations imu"
     missing || exit 0
     simulate "$root/config/scenarios/$case.yaml"
+    ;;
+  start) # in the midst of a drive, or of a flight among trees
+    axis=$3 seed=$4 variants=default
+    missing || exit 0
+    case $2 in
+      flight) simulate "$root/config/scenarios/forest_flight.yaml" --seed "$seed" --set duration=8 --set rest=0 \
+        --set "lidar.type=$3" ;;
+      *) simulate "$root/config/scenarios/street_vehicle.yaml" --seed "$seed" --set duration=8 --set rest=0 \
+        --set "lidar.type=$3" --set "world.type=$2" ;;
+    esac
     ;;
   cost)
     seed=$3 variants=$modes

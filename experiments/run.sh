@@ -3,15 +3,15 @@
 # puts them into docs/results.md. Each run leaves a file of its own, so that it goes on where it was stopped; results
 # of other programs or method files are kept apart.
 #   experiments/run.sh [-j JOBS] [-s SEEDS] [-o FOLDER] [-g "GROUPS"] [-n]
-#     -j  jobs at a time (default: the cores there are)      -s  seeds of the sweeps (default 5)
+#     -j  jobs at a time (default: the cores there are)      -s  seeds of sweeps and starts (default 5)
 #     -o  folder of results (default out/experiments)        -n  leave docs/ alone
-#     -g  of: sweep recording cost sequence (default: all)
+#     -g  of: sweep recording cost sequence start (default: all)
 # Recordings that are not in the repository are taken from $TAUT_DATA (default ../shared/data) and left out, visibly,
 # where they are absent.
 set -euo pipefail
 # shellcheck source=common.sh
 . "$(dirname "$0")/common.sh"
-jobs=$(nproc) seeds=5 out=$root/out/experiments groups="sweep recording cost sequence" docs=yes
+jobs=$(nproc) seeds=5 out=$root/out/experiments groups="sweep recording cost sequence start" docs=yes
 while getopts j:s:o:g:n option; do
   case $option in
     j) jobs=$OPTARG ;;
@@ -55,6 +55,12 @@ plan() { # the jobs of a group, one a line
       for name in hall_violent corridor_walk corridor_narrow_view forest_flight street_vehicle stairwell_walk \
         hall_fast_rosette; do
         echo "sequence $name"
+      done ;;
+    start)
+      for seed in $(seq "$seeds"); do
+        for name in "street VLP-16" "street HDL-32E" "forest VLP-16" "forest HDL-32E" "flight OS1-64"; do
+          echo "start $name $seed"
+        done
       done ;;
     cost) for seed in $(seq "$seeds"); do for name in $(recordings | head -1); do echo "cost $name $seed"; done; done ;;
     *) echo "no such group: $1" >&2; return 1 ;;

@@ -111,6 +111,14 @@ TEST(ADriveUnderWay, IsFollowedFromItsFirstSecond)
     EXPECT_LT(errors.position.max, 0.015);
 }
 
+TEST(ADriveUnderWay, IsNotHeldByFalseMatches)
+{
+    // From a car at rest, the passes end at a wrong speed with which a fifth of the points agrees.
+    const AbsoluteError errors = ofADriveUnderWay(" --set seed=6");
+    EXPECT_LT(errors.position.rmse, 0.003);
+    EXPECT_LT(errors.position.max, 0.015);
+}
+
 TEST(ADriveUnderWay, AmongTreesIsFollowedFromItsFirstSecond)
 {
     // Few matches, many of them false, as long as the speed is not known.

@@ -28,6 +28,10 @@ constexpr double kWrongGravity = 1.0;  // [m/s^2] off what it is on Earth
 constexpr double kWorse = 1.3;         // misfit of a pass to that of the one before
 constexpr double kNoBetter = 0.5;      // change by a pass to that by the one before
 
+// Where else to begin: a vehicle's speed along each horizontal axis of the body.
+constexpr double kOtherSpeed = 10;  // [m/s]
+const Vector3d kOtherStarts[] = {
+    Vector3d::UnitX(), -Vector3d::UnitX(), Vector3d::UnitY(), -Vector3d::UnitY()};
 }  // namespace
 
 Pipeline::Pipeline(
@@ -153,17 +157,16 @@ std::vector<ScanResult> Pipeline::tryStart(const Initialization& start)
     return results;
 }
 
-void Pipeline::bootstrap()
+TriedStart Pipeline::settle(const Initialization& initialization)
 {
     // In motion, the first scan is undistorted with an unknown velocity and makes a wrong map, and
     // the mean specific force is not gravity. The scans after it tell both: start again with what
     // they tell, as well known as it still changes, until map and motion agree.
-    bootstrapped_ = true;
-    Initialization start = *initialization_, widened = start, chosen = start;
+    Initialization start = initialization, widened = start;
     constexpr double kUnknown = std::numeric_limits<double>::infinity();
-    double last_misfit = kUnknown, last_change = kUnknown, best = kUnknown;
-    double change = 0;         // by the chosen pass, in what is negligible
-    double gravity_error = 0;  // [m/s^2] seen by the chosen pass
+    double last_misfit = kUnknown, last_change = kUnknown;
+    TriedStart best;
+    best.start = initialization;
     bool sharpen = true;
     for (int pass = 0; pass < kBootstrapPasses; pass++)
     {
@@ -181,24 +184,40 @@ void Pipeline::bootstrap()
         last_misfit = misfit;
         last_change = revision.change();
         const double merit = misfit * std::max(1.0, revision.change());
-        if (merit < best)
-        {
-            best = merit;
-            chosen = start;
-            change = revision.change();
-            gravity_error = revision.gravity_error;
-        }
+        if (merit < best.merit)
+            best = {
+                start, merit, revision.change(), revision.gravity_error, matchedShareOf(results)};
         if (revision.change() <= 1) break;
         widened.estimate.state = revised(start.estimate.state, revision);
         start = widened;
         if (sharpen) start.estimate.covariance = sharpened(widened.estimate.covariance, revision);
     }
-    if ((change > kUnsettled || gravity_error > kWrongGravity) && warn_)
+    return best;
+}
+
+void Pipeline::bootstrap()
+{
+    bootstrapped_ = true;
+    TriedStart best = settle(*initialization_);
+    // False matches hold a start near the velocity that it began with: where few of the features
+    // match, or the passes do not come to rest, others may agree with more of what the scans see.
+    if (!best.convincing())
+    {
+        for (const Vector3d& direction : kOtherStarts)
+        {
+            Initialization other = *initialization_;
+            NavState& x = other.estimate.state;
+            x.v_world += x.T_world_imu.R * Vector3d(kOtherSpeed * direction);
+            const TriedStart tried = settle(other);
+            if (tried.merit < best.merit) best = tried;
+        }
+    }
+    if ((best.change > kUnsettled || best.gravity_error > kWrongGravity) && warn_)
         warn_(
-            {chosen.estimate.state.t, "start_unsettled",
+            {best.start.estimate.state.t, "start_unsettled",
              "the first scans do not agree on velocity and gravity at the start: the beginning is "
              "less accurate"});
-    odometry_.start(chosen, withImu());
+    odometry_.start(best.start, withImu());
 }
 
 void Pipeline::process(const Scan& scan)

@@ -14,6 +14,7 @@ constexpr double kSettledVelocity = 0.02;  // [m/s] is negligible
 constexpr double kSettledTilt = 0.003;     // [rad]
 constexpr double kSharpestVelocity = 0.1;  // [m/s] a revised start is known no better
 constexpr double kSharpestTilt = 0.01;     // [rad]
+constexpr double kWellMatched = 0.5;       // share of the features
 
 /** What the body did when the first scan ended, in the world frame of the results. */
 struct StartOfMotion
@@ -106,4 +107,17 @@ double misfitOf(const std::vector<ScanResult>& results)
     // Scans that match nothing cost nothing, and say nothing.
     return matches > 0 ? cost / square(matches) : std::numeric_limits<double>::infinity();
 }
+
+double matchedShareOf(const std::vector<ScanResult>& results)
+{
+    double matches = 0, features = 0;
+    for (std::size_t k = 1; k < results.size(); k++)  // the first has no map
+    {
+        matches += results[k].correspondences;
+        features += results[k].features;
+    }
+    return features > 0 ? matches / features : 0;
+}
+
+bool TriedStart::convincing() const { return change <= 1 && matched > kWellMatched; }
 }  // namespace taut

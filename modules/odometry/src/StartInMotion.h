@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "taut/odometry/Odometry.h"
@@ -36,4 +37,20 @@ NavState::Matrix sharpened(const NavState::Matrix& covariance, const Revision& r
 /** How badly the scans fit the map that they make: by the cost of a match, and if matches are few.
  */
 double misfitOf(const std::vector<ScanResult>& results);
+
+/** Share of the features that found a match, over the scans that had a map to match: 0...1. */
+double matchedShareOf(const std::vector<ScanResult>& results);
+
+/** A start in motion after passes over the first scans, and how its best pass went. */
+struct TriedStart
+{
+    Initialization start;
+    double merit = std::numeric_limits<double>::infinity();  //!< misfit times change; 0 is best
+    double change = 0;         //!< by that pass, in what is negligible
+    double gravity_error = 0;  //!< [m/s^2] seen by that pass
+    double matched = 1;        //!< share of the features
+
+    /** Map and motion agree, and with most of what the scans see: not by chance. */
+    bool convincing() const;
+};
 }  // namespace taut

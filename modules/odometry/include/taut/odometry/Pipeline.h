@@ -8,6 +8,8 @@
 
 namespace taut
 {
+struct TriedStart;
+
 /** Brings the streams together: waits for the initialisation, holds each scan until the IMU reaches
  * over its end, and hands both to the odometry. */
 class Pipeline
@@ -41,6 +43,7 @@ class Pipeline
     void processReady(bool all);
     std::size_t readyScans() const;
     void bootstrap();
+    TriedStart settle(const Initialization& initialization);
     std::vector<ScanResult> tryStart(const Initialization& start);
     void process(const Scan& scan);
 
@@ -54,6 +57,5 @@ class Pipeline
     bool bootstrapped_ = false;
     std::deque<Scan> waiting_;
     ImuSamples imu_;
-    Time last_imu_ = 0;
 };
 }  // namespace taut
