@@ -119,5 +119,8 @@ double matchedShareOf(const std::vector<ScanResult>& results)
     return features > 0 ? matches / features : 0;
 }
 
-bool TriedStart::convincing() const { return change <= 1 && matched > kWellMatched; }
+bool TriedStart::convincing() const
+{
+    return change <= 1 && matched > kWellMatched;
+}
 }  // namespace taut
