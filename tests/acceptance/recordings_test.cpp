@@ -67,8 +67,6 @@ TEST_F(Recording, OfATripodTurnsInPlace)
     double farthest = 0;
     for (const StampedPose& pose : tripod)
         farthest = std::max(farthest, (pose.T_world_imu.p - tripod[0].T_world_imu.p).norm());
-    ASSERT_LT(farthest, 3) << "lost";
-    // It still slips by a metre: visible as skipped, not yet a failure.
-    if (farthest >= 0.2) GTEST_SKIP() << "known to slip: by " << farthest << " m instead of 0.2 m";
+    EXPECT_LT(farthest, 0.2);  // measured: 0.14 m
 }
 }  // namespace

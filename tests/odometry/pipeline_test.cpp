@@ -411,6 +411,33 @@ TEST(Pipeline, ABodyThatRestsInFrontOfOneWallDoesNotSlipAlongIt)
     }
 }
 
+TEST(Pipeline, ABodyThatTurnsInPlaceOverAFloorDoesNotSlip)
+{
+    // Nothing but a poor IMU tells of motion along the floor.
+    Recording turning;
+    turning.swing = 0;
+    turning.turn = {0.08, 0.02, 0};
+    turning.duration = 8;
+    turning.accel_noise = 0.03;
+    Streams over_floor{turning, turning.imu(), turning.scans()};
+    const Pose T = turning.T_imu_lidar;
+    for (Scan& scan : over_floor.scans)
+    {
+        const auto elsewhere = [&](const LidarPoint& p)
+        {
+            const double s = toSeconds(scan.timeOf(p) - turning.start);
+            return (turning.pose(s) * (T * Vector3d(p.position.cast<double>()))).z() > -1.2;
+        };
+        scan.points.erase(
+            std::remove_if(scan.points.begin(), scan.points.end(), elsewhere), scan.points.end());
+        ASSERT_GT(scan.points.size(), 300u);
+    }
+    const Outcome done = run(over_floor);
+    ASSERT_TRUE(done.initialization->at_rest);
+    for (const ScanResult& r : done.results)
+        EXPECT_LT(r.estimate.state.T_world_imu.p.norm(), 0.1);  // metres, if it is not held
+}
+
 TEST(Pipeline, AStartInMotionThatSeesNothingFollowsTheImu)
 {
     Streams blind = handInMotion();

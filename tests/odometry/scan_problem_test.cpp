@@ -144,7 +144,7 @@ TEST_P(AnyScanProblem, GradientIsThatOfTheCostInAnyChart)
     Random random(1);
     for (const double size : {0.0, 0.03, 0.2})
     {
-        if (size == 0.03) problem.setRest({{expSO3({0.1, -0.3, 0.2}), {1, 2, 3}}, 0.02, 0.05});
+        if (size == 0.03) problem.setRest({{expSO3({0.1, -0.3, 0.2}), {1, 2, 3}}, 0.02, 0.05, 0.3});
         problem.retract(randomStep(random, problem.dimension(), 0.02));
         const ProblemVector z = randomStep(random, problem.dimension(), size);
         const Eigen::VectorXd found = chartGradient(problem, z);
@@ -319,14 +319,15 @@ TEST(ScanProblem, ABodyAtRestIsKnownToBeWhereItWas)
     Instance instance(Undistortion::Bridge, PreviousState::Released);
     ScanProblem& problem = *instance.problem;
     problem.useLidar(false);
-    constexpr double sway = 0.003, turn = 0.002;
+    constexpr double sway = 0.003, turn = 0.002, speed = 0.01;
     problem.relinearize();
     const NavState::Matrix moving = problem.marginalInformation();
-    problem.setRest({problem.current().T_world_imu, sway, turn});
+    problem.setRest({problem.current().T_world_imu, sway, turn, speed});
     problem.relinearize();
     const NavState::Matrix gained = problem.marginalInformation() - moving;
     NavState::Matrix expected = NavState::Matrix::Zero();
     expected.diagonal().segment<3>(NavState::kPosition).setConstant(1 / square(sway));
+    expected.diagonal().segment<3>(NavState::kVelocity).setConstant(1 / square(speed));
     expected.diagonal().segment<3>(NavState::kRotation).setConstant(1 / square(turn));
     EXPECT_LT((gained - expected).norm(), 1e-6 * expected.norm());
 }

@@ -112,7 +112,7 @@ TEST_F(InitializerTest, ABodySwaysAsFarAsItTurnsAtRest)
     gyro_noise = 1e-5;
     EXPECT_EQ(swayOf(0), config.min_sway);
     EXPECT_NEAR(swayOf(5e-3), config.sway_lever * 5e-3, 1e-3);
-    config.max_sway = 3e-3;
+    config.max_sway = 2.5e-3;
     EXPECT_EQ(swayOf(5e-3), config.max_sway);
 }
 

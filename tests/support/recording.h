@@ -16,6 +16,7 @@ struct Recording
 {
     double rest = 1.5, duration = 5.0;             //!< [s] the motion begins after the rest
     double swing = 1.0;                            //!< of the motion: 1 is brisk, 0 none
+    Vector3d turn{0, 0, 0};                        //!< [rad/s] in place, after the rest
     Vector3d drift{0, 0, 0};                       //!< [m/s] steady, from the start: no rest
     double spin = 0;                               //!< [rad/s] about the vertical, the same
     double gyro_noise = 1e-3, accel_noise = 1e-2;  //!< densities
@@ -33,11 +34,11 @@ struct Recording
         const double u = s > rest ? s - rest - std::tanh(2 * (s - rest)) / 2 : 0.0;
         const Vector3d p(
             1.2 * std::sin(1.9 * u), 0.8 * (1 - std::cos(2.3 * u)), 0.3 * std::sin(2.9 * u));
-        const Vector3d turn(
+        const Vector3d swung(
             0.25 * std::sin(2.7 * u), 0.2 * std::sin(3.1 * u), 0.9 * std::sin(1.7 * u));
         const Matrix3d level = expSO3({0, -0.03, 0}) * expSO3({0.05, 0, 0});
         const Matrix3d spun = expSO3({0, 0, s * spin});
-        return {spun * level * expSO3(swing * turn), swing * p + s * drift};
+        return {spun * level * expSO3(swing * swung + u * turn), swing * p + s * drift};
     }
 
     NavState truth(Time t) const

@@ -18,9 +18,6 @@ namespace
  * correspondences, since an estimate takes its place: the kernel closes step by step. */
 constexpr double kStillPredicted = 0.25;
 
-/** A body that is this many sways from how it rested does not rest. */
-constexpr double kRestLeft = 4;
-
 /** Adds the time since its last call to a stage. */
 class Stopwatch
 {
@@ -43,15 +40,6 @@ std::array<double, 3> eigenvaluesOf(const Matrix3d& information)
     return {e[0], e[1], e[2]};
 }
 
-/** How much of a displacement is along directions that the LiDAR tells better than the rest, which
- * holds the body within sigma. */
-double seenOf(
-    const Vector3d& displacement, const NavState::Matrix& lidar_information, int part, double sigma)
-{
-    const Matrix3d told = lidar_information.block<3, 3>(part, part);
-    const Matrix3d both = told + Matrix3d::Identity() / square(sigma);
-    return (both.inverse() * told * displacement).norm();
-}
 }  // namespace
 
 Odometry::Odometry(const OdometryConfig& config, Executor& executor, WarningSink warn)
@@ -67,10 +55,7 @@ void Odometry::start(const Initialization& initialization, bool with_imu)
     previous_.information =
         initialization.estimate.covariance.ldlt().solve(NavState::Matrix::Identity());
     previous_rate_.setZero();
-    rest_end_ = initialization.at_rest
-                    ? previous_.state.t + fromSeconds(initialization.rest_duration)
-                    : previous_.state.t;
-    rest_ = {previous_.state.T_world_imu, initialization.sway, initialization.sway_angle};
+    rest_ = Rest(initialization, config_.initialization);
     noise_ = config_.imu_noise;
     if (config_.imu_noise_from_rest && initialization.at_rest)
     {
@@ -132,7 +117,8 @@ void Odometry::estimate(
     LidarFactor lidar(features, config_.lidar_noise, executor_);
     ScanProblem problem(previous_, motion, lidar, path, config);
     problem.useLidar(false);
-    if (motion.end() <= rest_end_) problem.setRest(rest_);
+    const double rate = logSO3(motion.knots.back().delta.gamma).norm() / motion.duration();
+    problem.setRest(rest_.at(problem.current(), problem.predictedCovariance(), rate));
 
     std::vector<MapPoint> queries(features.points.size());
     std::vector<Correspondence> correspondences;
@@ -189,20 +175,12 @@ void Odometry::estimate(
 void Odometry::endRestIfLeft(const NavState::Matrix& lidar_information)
 {
     // Steady motion is a rest to the IMU; the LiDAR knows better.
-    const Time t = previous_.state.t;
-    if (t > rest_end_) return;
-    const Pose left = rest_.T_world_imu.inverse() * previous_.state.T_world_imu;
-    const double moved =
-        seenOf(rest_.T_world_imu.R * left.p, lidar_information, NavState::kPosition, rest_.sway);
-    const double turned =
-        seenOf(logSO3(left.R), lidar_information, NavState::kRotation, rest_.turn);
-    if (moved < kRestLeft * rest_.sway && turned < kRestLeft * rest_.turn) return;
-    rest_end_ = t;
-    if (!warn_) return;
+    const auto left = rest_.endIfLeft(previous_.state, lidar_information);
+    if (!left || !warn_) return;
     std::ostringstream text;
-    text << "the LiDAR moves by " << 1e3 * moved << " mm and " << turned
+    text << "the LiDAR moves by " << 1e3 * left->moved << " mm and " << left->turned
          << " rad while the IMU rests";
-    warn_({t, "rest_left", text.str()});
+    warn_({previous_.state.t, "rest_left", text.str()});
 }
 
 double Odometry::balanceOf(const LidarFactor& lidar, const SweepPath& path, int matches) const

@@ -34,16 +34,22 @@ ScanProblem::ScanProblem(
     imu_information_ = symmetricInverse(released() ? of_imu : of_both);
 
     const NavState::Matrix to_current = f.d_current.inverse();
-    const NavState::Matrix predicted = to_current * of_both * to_current.transpose();
-    constexpr std::array<int, 2> parts{NavState::kPosition, NavState::kRotation};
-    for (int i = 0; i < 2; i++)
-        for (int j = 0; j < 2; j++)
-            predicted_.block<3, 3>(3 * i, 3 * j) = predicted.block<3, 3>(parts[i], parts[j]);
+    predicted_ = to_current * of_both * to_current.transpose();
 }
 
 int ScanProblem::dimension() const
 {
     return released() ? 2 * kN : kN;
+}
+
+LidarFactor::PoseCovariance ScanProblem::predictedPoseCovariance() const
+{
+    constexpr std::array<int, 2> parts{NavState::kPosition, NavState::kRotation};
+    LidarFactor::PoseCovariance pose;
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 2; j++)
+            pose.block<3, 3>(3 * i, 3 * j) = predicted_.block<3, 3>(parts[i], parts[j]);
+    return pose;
 }
 
 double ScanProblem::addPrior(ProblemMatrix& H, ProblemVector& g) const
@@ -96,27 +102,27 @@ double ScanProblem::addBiasPrior(ProblemMatrix& H, ProblemVector& g) const
 
 double ScanProblem::addRest(ProblemMatrix& H, ProblemVector& g) const
 {
+    double cost = 0;
+    const auto add = [&](int part, const Vector3d& e, const Matrix3d& J, double sigma)
+    {
+        const double w = 1 / square(sigma);
+        const int at = dimension() - kN + part;
+        H.block<3, 3>(at, at) += w * J.transpose() * J;
+        g.segment<3>(at) += w * J.transpose() * e;
+        cost += 0.5 * w * e.squaredNorm();
+    };
     const Pose& pose = current_.T_world_imu;
-    const Vector3d moved = pose.p - rest_.T_world_imu.p;
-    const double w_moved = 1 / square(rest_.sway);
-    const int position = dimension() - kN + NavState::kPosition;
-    H.diagonal().segment<3>(position).array() += w_moved;
-    g.segment<3>(position) += w_moved * moved;
-
     const Vector3d turned = logSO3(rest_.T_world_imu.R.transpose() * pose.R);
-    const Matrix3d J = inverseRightJacobianSO3(turned);
-    const double w_turned = 1 / square(rest_.turn);
-    const int rotation = dimension() - kN + NavState::kRotation;
-    H.block<3, 3>(rotation, rotation) += w_turned * J.transpose() * J;
-    g.segment<3>(rotation) += w_turned * J.transpose() * turned;
-    return 0.5 * (w_moved * moved.squaredNorm() + w_turned * turned.squaredNorm());
+    add(NavState::kPosition, pose.p - rest_.T_world_imu.p, Matrix3d::Identity(), rest_.sway);
+    add(NavState::kVelocity, current_.v_world, Matrix3d::Identity(), rest_.speed);
+    add(NavState::kRotation, turned, inverseRightJacobianSO3(turned), rest_.turn);
+    return cost;
 }
 
 double ScanProblem::addAllButLidar(ProblemMatrix& H, ProblemVector& g) const
 {
-    double cost = addImu(H, g) + addBiasPrior(H, g);
+    double cost = addImu(H, g) + addBiasPrior(H, g) + addRest(H, g);
     if (released()) cost += addPrior(H, g);
-    if (rest_.sway > 0) cost += addRest(H, g);
     return cost;
 }
 

@@ -58,9 +58,10 @@ void InitializationConfig::declare(ConfigSection& s)
     s.key("max_gyro_bias", max_gyro_bias, kPositive, "rad/s, a higher steady rate is motion");
     s.key("gravity_tolerance", gravity_tolerance, kPositive, "m/s^2, mean specific force to 9.81");
     s.key(
-        "sway_lever", sway_lever, kPositive, "m, a body at rest moves by this times its rotation");
+        "sway_lever", sway_lever, kPositive,
+        "m, a body at rest, or turning in place, moves by this times its rotation");
     s.key("min_sway", min_sway, kPositive, "m, and at least");
-    s.key("max_sway", max_sway, kPositive, "m, and at most: after a rest cut short");
+    s.key("max_sway", max_sway, kPositive, "m, and at most: after the rest, or one cut short");
     if (min_sway > max_sway) throw ConfigError(s.path() + ": min_sway exceeds max_sway");
     s.key("accel_bias_sigma", accel_bias_sigma, kPositive, "m/s^2, absolute prior");
     s.key("gyro_bias_sigma", gyro_bias_sigma, kPositive, "rad/s, absolute prior");
@@ -220,7 +221,6 @@ Initialization Initializer::fromRest() const
     Initialization init;
     init.rest_duration = seconds;
     init.sway = swayAtRest();
-    init.sway_angle = init.sway / config_.sway_lever;
     init.measured_noise = {};
     init.measured_noise.accel = std::sqrt(std::max(0.0, accel_variance.mean()) * dt);
     init.measured_noise.gyro = std::sqrt(std::max(0.0, gyro_variance.mean()) * dt);

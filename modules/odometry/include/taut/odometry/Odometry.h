@@ -5,7 +5,7 @@
 
 #include "taut/core/Warning.h"
 #include "taut/odometry/OdometryConfig.h"
-#include "taut/odometry/ScanProblem.h"
+#include "taut/odometry/Rest.h"
 
 namespace taut
 {
@@ -73,8 +73,7 @@ class Odometry
     ImuNoise noise_;
     bool with_imu_ = true, started_ = false;
     NavPrior previous_;
-    RestPrior rest_;
-    Time rest_end_ = 0;  //!< the body rests until then
+    Rest rest_;
     Vector3d previous_rate_ = Vector3d::Zero();
 };
 }  // namespace taut

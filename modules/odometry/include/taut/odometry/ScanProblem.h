@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "taut/core/Solver.h"
 #include "taut/factors/ImuFactor.h"
 #include "taut/factors/LidarFactor.h"
@@ -14,16 +16,17 @@ struct NavPrior
     NavState::Matrix information = NavState::Matrix::Identity();
 };
 
-/** Where a body rests, and how firmly (one standard deviation each). */
+/** Where and how firmly a body rests, one standard deviation each; infinite: nothing is known. */
 struct RestPrior
 {
     Pose T_world_imu;
-    double sway = 0;  //!< [m]; 0: nothing is known
-    double turn = 0;  //!< [rad] about any axis
+    double sway = std::numeric_limits<double>::infinity();   //!< [m] away from there
+    double turn = std::numeric_limits<double>::infinity();   //!< [rad] about any axis
+    double speed = std::numeric_limits<double>::infinity();  //!< [m/s]
 };
 
 /** The cost of one scan (paper, equation 17): IMU factor, LiDAR factors, absolute bias prior,
- * the pose of the rest while the body rests and, where the previous state is released, its prior.
+ * what is known of a body that rests and, where the previous state is released, its prior.
  * Unknowns: (x_{k-1}, x_k), or x_k alone. */
 class ScanProblem : public LeastSquaresProblem
 {
@@ -44,8 +47,10 @@ class ScanProblem : public LeastSquaresProblem
     const NavState& previous() const { return previous_; }
     const NavState& current() const { return current_; }
 
-    /** Covariance of (p, theta) of x_k before the LiDAR is asked. */
-    LidarFactor::PoseCovariance predictedPoseCovariance() const { return predicted_; }
+    /** Covariance of x_k as it is predicted: before LiDAR and rest are asked. */
+    const NavState::Matrix& predictedCovariance() const { return predicted_; }
+    /** Of its (p, theta). */
+    LidarFactor::PoseCovariance predictedPoseCovariance() const;
 
     /** Factor on the LiDAR noise. */
     void setBalance(double balance)
@@ -53,7 +58,7 @@ class ScanProblem : public LeastSquaresProblem
         balance_ = balance;
         linearized_ = false;
     }
-    /** The body is known to rest at t_k. */
+    /** What is known of the body at t_k if it rests. */
     void setRest(const RestPrior& rest)
     {
         rest_ = rest;
@@ -90,8 +95,7 @@ class ScanProblem : public LeastSquaresProblem
     SweepPath& path_;
     const EstimationConfig& config_;
     NavState previous_, current_, saved_previous_, saved_current_;
-    NavState::Matrix imu_information_;
-    LidarFactor::PoseCovariance predicted_;
+    NavState::Matrix imu_information_, predicted_;
     ProblemMatrix hessian_, lidar_hessian_;  // of the last linearisation
     bool linearized_ = false;                // at the current estimate, noise and correspondences
     double balance_ = 1;

@@ -32,7 +32,7 @@ struct InitializationConfig
 
     // How far a body at rest moves: a lever times the furthest that it turns, within bounds. A rest
     // that motion cuts short may end in a part of that motion: it sways as far as any.
-    double sway_lever = 1.0;  //!< [m]
+    double sway_lever = 0.5;  //!< [m]
     double min_sway = 2e-3;   //!< [m]
     double max_sway = 0.02;   //!< [m]
 
@@ -54,7 +54,6 @@ struct Initialization
     bool at_rest = true;
     double rest_duration = 0;  //!< [s] of data used
     double sway = 0;           //!< [m] that the body is away from the origin while it rests there
-    double sway_angle = 0;     //!< [rad] that it is turned meanwhile
     ImuNoise measured_noise;   //!< white noise densities seen at rest; 0 if not at rest
 };
 
