@@ -116,6 +116,34 @@ TEST_F(LidarFactorTest, GradientIsThatOfTheCost)
         }
 }
 
+TEST_F(LidarFactorTest, AFeatureIsExplainedByItsNoiseAlone)
+{
+    addPoints(300);
+    noise.kernel = {Kernel::GemanMcClure, 3};
+    predicted.diagonal().setConstant(1);  // widens the kernel, but not this
+    const SweepPath path = pathOf(Undistortion::Bridge);
+    LidarFactor lidar(features, noise, single);
+    const std::vector<Vector3d> seen = lidar.undistort(path);
+    const auto explainedAt = [&](double sigmas)
+    {
+        for (std::size_t i = 0; i < seen.size(); i++)
+        {
+            Correspondence& c = correspondences[i];
+            const Vector3d off =
+                c.surface == Surface::Line ? c.direction.unitOrthogonal() : c.direction;
+            c.point = seen[i] + sigmas * std::hypot(noise.sigma, c.sigma) * off;
+        }
+        lidar.setCorrespondences(correspondences, path, predicted, 1);
+        return lidar.explained(path);
+    };
+    const auto matched = static_cast<double>(std::count_if(
+        correspondences.begin(), correspondences.end(),
+        [](const Correspondence& c) { return c.surface != Surface::None; }));
+    EXPECT_NEAR(explainedAt(0), matched, 1e-9);
+    EXPECT_NEAR(explainedAt(2), matched * noise.kernel.weight(4), 1e-6 * matched);
+    EXPECT_LT(explainedAt(30), 0.01 * matched);
+}
+
 TEST_F(LidarFactorTest, AnUncertainPredictionKeepsFarMatchesInPlay)
 {
     addPoints(300);

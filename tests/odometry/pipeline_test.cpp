@@ -304,6 +304,57 @@ TEST(Pipeline, AGapBetweenScansIsReportedAndSurvived)
     EXPECT_LT(done.error(gap.recording), 0.02);
 }
 
+TEST(Pipeline, IsFoundAgainAfterAGapOfBothSensors)
+{
+    Streams gap = hand();
+    const Time begin = gap.recording.start + fromSeconds(3.0);
+    const Time end = begin + fromSeconds(0.8);
+    gap.imu.erase(
+        std::remove_if(
+            gap.imu.begin(), gap.imu.end(),
+            [&](const ImuSample& s) { return s.t > begin && s.t < end; }),
+        gap.imu.end());
+    gap.scans.erase(
+        std::remove_if(
+            gap.scans.begin(), gap.scans.end(),
+            [&](const Scan& s) { return s.end > begin && s.stamp < end; }),
+        gap.scans.end());
+    const Outcome done = run(gap);
+    EXPECT_EQ(done.log.count("lidar_gap"), 1u);
+    EXPECT_EQ(done.log.count("pose_doubtful"), 0u);
+    EXPECT_LT(done.error(gap.recording), 0.03);
+}
+
+TEST(Pipeline, IsFoundAgainAfterTheClocksJumpForward)
+{
+    Streams jump = hand();
+    const Time when = jump.recording.start + fromSeconds(3.0);
+    const Duration by = fromSeconds(2.5);
+    for (ImuSample& s : jump.imu)
+        if (s.t > when) s.t += by;
+    for (Scan& s : jump.scans)
+        if (s.end > when)
+        {
+            s.stamp += by;
+            s.end += by;
+        }
+    Outcome done = run(jump);
+    EXPECT_EQ(done.log.count("pose_doubtful"), 0u);
+    for (ScanResult& r : done.results)
+        if (r.estimate.state.t > when) r.estimate.state.t -= by;
+    EXPECT_LT(done.error(jump.recording), 0.03);
+}
+
+TEST(Pipeline, APoseThatIsLostIsReported)
+{
+    Streams turned = hand();
+    for (std::size_t i = 35; i < turned.scans.size(); i++)
+        for (LidarPoint& p : turned.scans[i].points)
+            p.position = {p.position.y(), -p.position.x(), p.position.z()};
+    EXPECT_GT(run(turned).log.count("pose_doubtful"), 0u);
+    EXPECT_EQ(run(hand()).log.count("pose_doubtful"), 0u);
+}
+
 TEST(Pipeline, AScanThatSeesNothingFollowsTheImu)
 {
     Streams dark = hand();

@@ -271,4 +271,14 @@ LidarFit LidarFactor::fit(const SweepPath& path, double balance) const
         });
     return f;
 }
+
+double LidarFactor::explained(const SweepPath& path) const
+{
+    double sum = 0;
+    forResiduals(
+        path, 1,
+        [&](double r2, const Noise& noise, int)
+        { sum += noise.kernel.weight(r2 / noise.variance); });
+    return sum;
+}
 }  // namespace taut

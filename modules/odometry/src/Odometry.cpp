@@ -3,35 +3,23 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
+#include "Registration.h"
+#include "Stopwatch.h"
 #include "taut/factors/SampledPath.h"
 
 namespace taut
 {
 namespace
 {
-/** Share of the prediction's covariance that is left to explain residuals after each look-up of
- * correspondences, since an estimate takes its place: the kernel closes step by step. */
-constexpr double kStillPredicted = 0.25;
-
-/** Adds the time since its last call to a stage. */
-class Stopwatch
-{
- public:
-    void stage(double& milliseconds)
-    {
-        const auto now = std::chrono::steady_clock::now();
-        milliseconds += std::chrono::duration<double, std::milli>(now - last_).count();
-        last_ = now;
-    }
-
- private:
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
+// The share of the matches that are explained varies little while the pose is right: between 0.67
+// and 1.1 of its mean in simulated and real recordings. At a place that is not where the map has
+// it, half of them are false or more.
+constexpr double kDoubtfulFit = 0.6;  // to the usual share
+constexpr double kFitMemory = 0.1;    // weight of a scan in it
 
 std::array<double, 3> eigenvaluesOf(const Matrix3d& information)
 {
@@ -39,7 +27,6 @@ std::array<double, 3> eigenvaluesOf(const Matrix3d& information)
         Eigen::SelfAdjointEigenSolver<Matrix3d>(information, Eigen::EigenvaluesOnly).eigenvalues();
     return {e[0], e[1], e[2]};
 }
-
 }  // namespace
 
 Odometry::Odometry(const OdometryConfig& config, Executor& executor, WarningSink warn)
@@ -62,6 +49,7 @@ void Odometry::start(const Initialization& initialization, bool with_imu)
         noise_.gyro = std::max(noise_.gyro, initialization.measured_noise.gyro);
         noise_.accel = std::max(noise_.accel, initialization.measured_noise.accel);
     }
+    usual_explained_ = usual_fit_ = 0;
     config_.map->clear();
 }
 
@@ -91,9 +79,11 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples& imu)
     const NavState prior = predict(motion, previous_.state);
     result.motion = motion.knots.back().delta;
     result.duration = motion.duration();
-    SweepPath path(
-        scan.already_undistorted ? Undistortion::None : config_.estimation.undistortion, motion,
-        previous_.state, prior);
+    Undistortion mode = config_.estimation.undistortion;
+    if (scan.already_undistorted) mode = Undistortion::None;
+    // What was not measured in a gap before the sweep is not to be closed in the sweep.
+    if (isIterated(mode) && with_imu_ && hasLongGap(motion)) mode = Undistortion::IteratedImu;
+    SweepPath path(mode, motion, previous_.state, prior);
     watch.stage(result.times.preintegrate);
 
     const Features features = config_.extractor->extract(scan, warn_);
@@ -113,45 +103,19 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples& imu)
 void Odometry::estimate(
     const Features& features, const PreintegratedImu& motion, SweepPath& path, ScanResult& result)
 {
-    const EstimationConfig& config = config_.estimation;
-    LidarFactor lidar(features, config_.lidar_noise, executor_);
-    ScanProblem problem(previous_, motion, lidar, path, config);
-    problem.useLidar(false);
-    const double rate = logSO3(motion.knots.back().delta.gamma).norm() / motion.duration();
-    problem.setRest(rest_.at(problem.current(), problem.predictedCovariance(), rate));
-
-    std::vector<MapPoint> queries(features.points.size());
-    std::vector<Correspondence> correspondences;
-    double balance = config.inflation;
-    LidarFactor::PoseCovariance unexplained = problem.predictedPoseCovariance();
-    for (int i = 0; i < config.max_iterations && !config_.map->empty(); i++)
+    Registration registration(config_, executor_, previous_, motion, features, path);
+    ScanProblem& problem = registration.problem();
+    LidarFactor::PoseCovariance uncertain = problem.predictedPoseCovariance();
+    if (with_imu_ && hasLongGap(motion) && !config_.map->empty())
     {
-        Stopwatch watch;
-        const std::vector<Vector3d>& world = lidar.undistort(path);
-        for (std::size_t j = 0; j < world.size(); j++)
-            queries[j] = {
-                world[j], features.points[j].kind,
-                (problem.current().T_world_imu.p - world[j]).normalized()};
-        config_.map->match(queries, correspondences, executor_);
-        watch.stage(result.times.match);
-
-        lidar.setCorrespondences(correspondences, path, unexplained, balance);
-        unexplained *= kStillPredicted;
-        result.correspondences = static_cast<int>(std::count_if(
-            correspondences.begin(), correspondences.end(),
-            [](const Correspondence& c) { return c.surface != Surface::None; }));
-        result.lidar_used = result.correspondences >= config.min_correspondences;
-        problem.useLidar(result.lidar_used);
-        if (config.balance && i > 0) balance = balanceOf(lidar, path, result.correspondences);
-        problem.setBalance(balance);
-
-        const SolveReport report = config_.solver->solve(problem);
-        result.iterations = i + 1;
-        result.cost = report.final_cost;
-        result.converged = report.last_step < config.min_step;
-        if (result.converged && i > 0) break;
+        uncertain = registration.startAfterGap(usual_explained_);
     }
-    result.balance = balance;
+    else
+    {
+        const double rate = logSO3(motion.knots.back().delta.gamma).norm() / motion.duration();
+        problem.setRest(rest_.at(problem.current(), problem.predictedCovariance(), rate));
+    }
+    registration.iterate(uncertain, result);
     result.previous = problem.previous();
 
     problem.relinearize();
@@ -170,6 +134,28 @@ void Odometry::estimate(
     result.estimate.state = previous_.state;
     result.estimate.covariance = information.ldlt().solve(NavState::Matrix::Identity());
     endRestIfLeft(lidar_information);
+    judgeFit(result);
+}
+
+void Odometry::judgeFit(const ScanResult& result)
+{
+    if (!result.lidar_used) return;
+    const double fit = result.explained / result.correspondences;
+    const double explained = result.explained / result.features;
+    if (usual_fit_ == 0)
+    {
+        usual_fit_ = fit;
+        usual_explained_ = explained;
+    }
+    if (fit < kDoubtfulFit * usual_fit_ && warn_)
+    {
+        std::ostringstream text;
+        text << "only " << std::lround(100 * fit) << " % of the matched points fit the map, where "
+             << std::lround(100 * usual_fit_) << " % did: the pose may be lost from here on";
+        warn_({previous_.state.t, "pose_doubtful", text.str()});
+    }
+    usual_fit_ += kFitMemory * (fit - usual_fit_);
+    usual_explained_ += kFitMemory * (explained - usual_explained_);
 }
 
 void Odometry::endRestIfLeft(const NavState::Matrix& lidar_information)
@@ -181,14 +167,6 @@ void Odometry::endRestIfLeft(const NavState::Matrix& lidar_information)
     text << "the LiDAR moves by " << 1e3 * left->moved << " mm and " << left->turned
          << " rad while the IMU rests";
     warn_({previous_.state.t, "rest_left", text.str()});
-}
-
-double Odometry::balanceOf(const LidarFactor& lidar, const SweepPath& path, int matches) const
-{
-    const EstimationConfig& config = config_.estimation;
-    if (matches < config.balance_min_matches) return config.inflation;
-    const double spread = std::sqrt(lidar.fit(path, 1.0).reducedChi2());
-    return config.inflation * std::clamp(spread, 0.3, 10.0);
 }
 
 std::vector<Eigen::Vector3f> Odometry::undistorted(

@@ -114,7 +114,7 @@ double ScanProblem::addRest(ProblemMatrix& H, ProblemVector& g) const
     const Pose& pose = current_.T_world_imu;
     const Vector3d turned = logSO3(rest_.T_world_imu.R.transpose() * pose.R);
     add(NavState::kPosition, pose.p - rest_.T_world_imu.p, Matrix3d::Identity(), rest_.sway);
-    add(NavState::kVelocity, current_.v_world, Matrix3d::Identity(), rest_.speed);
+    add(NavState::kVelocity, current_.v_world - rest_.v_world, Matrix3d::Identity(), rest_.speed);
     add(NavState::kRotation, turned, inverseRightJacobianSO3(turned), rest_.turn);
     return cost;
 }
@@ -162,6 +162,14 @@ void ScanProblem::retract(const ProblemVector& delta)
 {
     if (released()) previous_ = previous_.retract(delta.head<kN>());
     current_ = current_.retract(delta.tail<kN>());
+    linearized_ = false;
+    path_.setStates(previous_, current_);
+}
+
+void ScanProblem::startFrom(const NavState& current)
+{
+    previous_ = prior_.state;
+    current_ = current;
     linearized_ = false;
     path_.setStates(previous_, current_);
 }

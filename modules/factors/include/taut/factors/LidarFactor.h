@@ -65,6 +65,10 @@ class LidarFactor
     double cost(const SweepPath& path, double balance) const;
     LidarFit fit(const SweepPath& path, double balance) const;
 
+    /** How many features are explained by their surfaces: the sum of the robust weights of the
+     * residuals by their noise alone, neither balanced nor widened. */
+    double explained(const SweepPath& path) const;
+
  private:
     struct Interval;
     struct Noise;

@@ -30,6 +30,7 @@ struct ScanResult
     double duration = 0;          //!< [s] between both
     std::size_t scan_points = 0;  //!< raw points used, in range and time
     int features = 0, correspondences = 0, iterations = 0;
+    double explained = 0;  //!< of the correspondences, by their surfaces: the sum of robust weights
     bool converged = true;
     bool lidar_used = false;  //!< false: too few correspondences; the IMU alone moved the state
     double cost = 0, balance = 1;
@@ -61,11 +62,11 @@ class Odometry
     void estimate(
         const Features& features, const PreintegratedImu& motion, SweepPath& path,
         ScanResult& result);
+    void judgeFit(const ScanResult& result);
     std::vector<Eigen::Vector3f> undistorted(
         const Scan& raw, Time begin, const SweepPath& path) const;
     void endRestIfLeft(const NavState::Matrix& lidar_information);
     void insert(const Scan& scan, const SweepPath& path, ScanResult& result);
-    double balanceOf(const LidarFactor& lidar, const SweepPath& path, int matches) const;
 
     const OdometryConfig& config_;
     Executor& executor_;
@@ -75,5 +76,8 @@ class Odometry
     NavPrior previous_;
     Rest rest_;
     Vector3d previous_rate_ = Vector3d::Zero();
+    /** Shares of late: of the features that are matched and explained, and of the matches that are.
+     * 0: not known yet. */
+    double usual_explained_ = 0, usual_fit_ = 0;
 };
 }  // namespace taut

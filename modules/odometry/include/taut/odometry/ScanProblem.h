@@ -16,13 +16,15 @@ struct NavPrior
     NavState::Matrix information = NavState::Matrix::Identity();
 };
 
-/** Where and how firmly a body rests, one standard deviation each; infinite: nothing is known. */
+/** Where a body rests, or how it went on while nothing was measured, one standard deviation each;
+ * infinite: nothing is known. */
 struct RestPrior
 {
     Pose T_world_imu;
     double sway = std::numeric_limits<double>::infinity();   //!< [m] away from there
     double turn = std::numeric_limits<double>::infinity();   //!< [rad] about any axis
-    double speed = std::numeric_limits<double>::infinity();  //!< [m/s]
+    double speed = std::numeric_limits<double>::infinity();  //!< [m/s] other than v_world
+    Vector3d v_world = Vector3d::Zero();                     //!< [m/s]
 };
 
 /** The cost of one scan (paper, equation 17): IMU factor, LiDAR factors, absolute bias prior,
@@ -43,6 +45,9 @@ class ScanProblem : public LeastSquaresProblem
     void restore() override;
     ProblemMatrix chartJacobian(const ProblemVector& z) const override;
     ProblemVector maxStep() const override;
+
+    /** Begins anew: at the prior's x_{k-1} and the given x_k. */
+    void startFrom(const NavState& current);
 
     const NavState& previous() const { return previous_; }
     const NavState& current() const { return current_; }
