@@ -77,7 +77,7 @@ void OctreeMap::configure(ConfigSection& s)
 void OctreeMap::clear()
 {
     tree_ = std::make_unique<StatisticsTree>(config.leaf_size);
-    levels_.assign(static_cast<std::size_t>(config.scales), {});
+    levels_ = std::vector<Level>(static_cast<std::size_t>(config.scales));
     blocks_.clear();
     insertions_ = 0;
     range_noise_ = 0;
@@ -170,19 +170,14 @@ void OctreeMap::slide(const Vector3d& center_world)
         }
     }
     for (Level& level : levels_)
-        for (auto it = level.index.begin(); it != level.index.end();)
-        {
-            if (outside(unpack(it->first), kTreeDepth))
+        level.index.eraseIf(
+            [&](std::uint64_t corner, std::uint32_t window)
             {
-                level.free.push_back(it->second);
-                it = level.index.erase(it);
-            }
-            else
-            {
-                level.windows[it->second].places = {};  // some nodes may be gone
-                ++it;
-            }
-        }
+                level.windows[window].places = {};  // some nodes may be gone
+                const bool leaves = outside(unpack(corner), kTreeDepth);
+                if (leaves) level.windows.remove(window);
+                return leaves;
+            });
     if ((center_world - origin_).cwiseAbs().maxCoeff() > kRecenterKeys * config.leaf_size)
         recenter(center_world);
 }
@@ -214,7 +209,7 @@ void OctreeMap::recenter(const Vector3d& center_world)
         remember(key);
     }
     tree_ = std::make_unique<StatisticsTree>(config.leaf_size);
-    levels_.assign(levels_.size(), {});
+    levels_ = std::vector<Level>(levels_.size());
     Executor single;
     tree_->add(
         std::move(entries), depthOf(config.scales - 1), {},

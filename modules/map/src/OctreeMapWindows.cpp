@@ -10,47 +10,60 @@ namespace taut
 {
 namespace
 {
-constexpr std::uint32_t kMaxPatience = 15;  // insertions
-constexpr double kGrowth = 1.2;             // of a window's points, that it is computed anew
-constexpr double kDoubt = 3;                // deviations of the thickness of a smaller window
-constexpr double kThin = 0.1;               // quantile of the planes that tells the noise
-constexpr std::uint32_t kYoung = 30;        // insertions: a young map is as thick as it is wrong
-constexpr double kSameView = 1e-3;          // squared, between iterations
-constexpr double kGrazing = 0.05;           // cosine to the normal
+constexpr std::uint8_t kMaxPatience = 15;  // insertions
+constexpr double kGrowth = 1.2;            // of a window's points, that it is computed anew
+constexpr double kDoubt = 3;               // deviations of the thickness of a smaller window
+constexpr double kThin = 0.1;              // quantile of the planes that tells the noise
+constexpr std::uint32_t kYoung = 30;       // insertions: a young map is as thick as it is wrong
+constexpr double kSameView = 1e-3;         // squared, between iterations
+constexpr double kGrazing = 0.05;          // cosine to the normal
+constexpr double kMiddleKey = 32768;       // of a leaf, at the origin
+constexpr double kMargin = 256;            // [leaves] more than half a window
 }  // namespace
 
-bool OctreeMap::cornerOf(const Vector3d& p, int level, std::array<std::uint16_t, 3>& corner) const
+std::uint32_t OctreeMap::Windows::add()
 {
-    // The key of the node just above the node corner that is nearest to p.
-    const double edge = config.leaf_size * (1 << level);
-    for (int i = 0; i < 3; i++)
+    std::uint32_t i = size_;
+    if (free_.empty())
     {
-        const double nearest = std::floor((p[i] - origin_[i]) / edge + 0.5) * (1 << level) + 32768;
-        if (!(nearest >= 256 && nearest < 65280)) return false;
-        corner[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(nearest);
+        if (size_++ % kBlock == 0) blocks_.push_back(std::make_unique<Window[]>(kBlock));
+        return i;
     }
-    return true;
+    i = free_.back();
+    free_.pop_back();
+    (*this)[i] = {};
+    return i;
 }
 
-std::uint32_t OctreeMap::windowAt(Level& level, const std::array<std::uint16_t, 3>& corner) const
+OctreeMap::Cell OctreeMap::cellOf(const Vector3d& p) const
 {
-    const auto [it, added] = level.index.try_emplace(pack(corner[0], corner[1], corner[2]), 0u);
-    if (added)
+    Cell cell;
+    for (int i = 0; i < 3; i++)
     {
-        if (level.free.empty())
-        {
-            it.value() = static_cast<std::uint32_t>(level.windows.size());
-            level.windows.emplace_back();
-        }
-        else
-        {
-            it.value() = level.free.back();
-            level.free.pop_back();
-            level.windows[it.value()] = {};
-        }
-        level.windows[it.value()].corner = corner;
+        const double halves = 2 * ((p[i] - origin_[i]) / config.leaf_size + kMiddleKey);
+        if (!(halves >= 2 * kMargin && halves < 2 * (2 * kMiddleKey - kMargin))) return {};
+        cell[static_cast<std::size_t>(i)] = static_cast<std::uint32_t>(halves);
     }
-    return it->second;
+    return cell;
+}
+
+std::uint64_t OctreeMap::cornerOf(const Cell& cell, int level)
+{
+    // The key of the node just above the node corner that is nearest to the cell.
+    const auto key = [&](std::uint32_t halves)
+    { return static_cast<std::uint16_t>((halves + (1u << level)) >> (level + 1) << level); };
+    return pack(key(cell[0]), key(cell[1]), key(cell[2]));
+}
+
+std::uint32_t OctreeMap::windowAt(Level& level, std::uint64_t corner)
+{
+    std::uint32_t window = level.index.find(corner);
+    if (window != kNoWindow) return window;
+    window = level.windows.add();
+    level.index.insert(corner, window);
+    const octomap::OcTreeKey key = unpack(corner);
+    level.windows[window].corner = {key[0], key[1], key[2]};
+    return window;
 }
 
 bool OctreeMap::isStale(const Window& window) const
@@ -81,9 +94,7 @@ void OctreeMap::refresh(Window& window, int level) const
         PointStatistics sum;
         for (const StatisticsTree::Place& place : window.places)
             if (place.depth == depth) sum.add(place.node->statistics());
-        const double min_width = config.min_spread * config.leaf_size * (1 << level);
-        window.min_width2 = min_width * min_width;
-        compute(window, sum);
+        compute(window, level, sum);
     }
     schedule(window, count);
 }
@@ -98,82 +109,75 @@ void OctreeMap::schedule(Window& window, double count) const
     window.patience = 0;
     if (window.age == 0) return;
     window.patience = missing * window.age < kMaxPatience * arrived
-                          ? static_cast<std::uint32_t>(missing * window.age / arrived)
+                          ? static_cast<std::uint8_t>(missing * window.age / arrived)
                           : kMaxPatience;
 }
 
-void OctreeMap::compute(Window& window, const PointStatistics& statistics) const
+void OctreeMap::compute(Window& window, int level, const PointStatistics& statistics) const
 {
-    window.count = statistics.count;
-    window.mean = statistics.mean();
-    window.view = statistics.views / statistics.count;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
     eigen.computeDirect(Eigen::Matrix3d(statistics.scatter() / statistics.count));
+    window.count = statistics.count;
+    window.mean = statistics.mean();
     window.normal = eigen.eigenvectors().col(0);
     window.axis = eigen.eigenvectors().col(2);
+    window.cosine = window.normal.dot(statistics.views / statistics.count);
     // Three degrees of freedom went into the plane.
-    window.thickness2 =
+    const double thickness2 =
         std::max(0.0, eigen.eigenvalues()[0]) * statistics.count / (statistics.count - 3);
     window.width2 = std::max(0.0, eigen.eigenvalues()[1]);
     window.length2 = std::max(0.0, eigen.eigenvalues()[2]);
+    window.variance = std::max(thickness2, config.min_sigma * config.min_sigma);
+    // The relative deviation of a variance from n - 3 residuals is sqrt(2 / (n - 3)).
+    window.largest_variance = window.variance * (1 + kDoubt * std::sqrt(2 / (window.count - 3)));
+    window.plane = isPlane(window, level, thickness2);
+    window.line = isLine(window);
 }
 
-bool OctreeMap::isPlane(const Window& w) const
+bool OctreeMap::isPlane(const Window& w, int level, double thickness2) const
 {
-    return w.count >= config.min_points &&
-           w.thickness2 < config.max_thickness * config.max_thickness &&
-           w.thickness2 < config.max_flatness * config.max_flatness * w.width2 &&
-           w.width2 > config.min_width * config.min_width && w.width2 > w.min_width2;
+    const double min_width =
+        std::max(config.min_width, config.min_spread * config.leaf_size * (1 << level));
+    return thickness2 < config.max_thickness * config.max_thickness &&
+           thickness2 < config.max_flatness * config.max_flatness * w.width2 &&
+           w.width2 > min_width * min_width;
 }
 
 bool OctreeMap::isOnSideOf(const Window& w, const MapPoint& query)
 {
     // The other side of a wall or of a floor is another surface; a grazing view is of either.
-    return w.normal.dot(w.view) * w.normal.dot(query.view) > -kGrazing * kGrazing;
+    return w.cosine * w.normal.dot(query.view) > -kGrazing * kGrazing;
 }
 
 bool OctreeMap::isLine(const Window& w) const
 {
-    return config.lines && w.count >= config.min_points &&
-           w.width2 < config.max_thickness * config.max_thickness &&
+    return config.lines && w.width2 < config.max_thickness * config.max_thickness &&
            w.width2 < config.max_flatness * config.max_flatness * w.length2;
-}
-
-double OctreeMap::variance(const Window& window) const
-{
-    return std::max(window.thickness2, config.min_sigma * config.min_sigma);
-}
-
-double OctreeMap::largestVariance(const Window& window) const
-{
-    // The relative deviation of a variance from n - 3 residuals is sqrt(2 / (n - 3)).
-    return variance(window) * (1 + kDoubt * std::sqrt(2 / (window.count - 3)));
 }
 
 bool OctreeMap::isThinAsNoise(const Window& w) const
 {
-    const double noise = std::max(config.min_sigma, range_noise_ * std::abs(w.normal.dot(w.view)));
-    return variance(w) <= config.scale_tolerance * config.scale_tolerance * noise * noise;
+    const double noise = std::max(config.min_sigma, range_noise_ * std::abs(w.cosine));
+    return w.variance <= config.scale_tolerance * config.scale_tolerance * noise * noise;
 }
 
 void OctreeMap::learnRangeNoise() const
 {
     // Noise along the rays makes a plane as thick as it is, times the cosine of view and normal.
     if (insertions_ < kYoung) return;
-    std::vector<double> noise;
-    noise.reserve(searches_.size());
+    std::vector<double> noise2;
+    noise2.reserve(searches_.size());
     for (const Search& s : searches_)
     {
         if (s.best_level < 0 || s.line) continue;
         const Window& w = levels_[static_cast<std::size_t>(s.best_level)].windows[s.best];
-        const double cosine = std::abs(w.normal.dot(w.view));
-        if (cosine > kGrazing) noise.push_back(std::sqrt(variance(w)) / cosine);
+        if (std::abs(w.cosine) > kGrazing) noise2.push_back(w.variance / (w.cosine * w.cosine));
     }
-    if (noise.empty()) return;
+    if (noise2.empty()) return;
     const auto thin =
-        noise.begin() + static_cast<std::ptrdiff_t>(kThin * static_cast<double>(noise.size()));
-    std::nth_element(noise.begin(), thin, noise.end());
-    range_noise_ = *thin;
+        noise2.begin() + static_cast<std::ptrdiff_t>(kThin * static_cast<double>(noise2.size()));
+    std::nth_element(noise2.begin(), thin, noise2.end());
+    range_noise_ = std::sqrt(*thin);
 }
 
 Correspondence OctreeMap::planeAt(const Vector3d& query, const Window& window) const
@@ -190,7 +194,7 @@ Correspondence OctreeMap::planeAt(const Vector3d& query, const Window& window) c
     const double across2 = std::max(0.0, d.squaredNorm() - distance * distance - along * along);
     const double leverage =
         (1 + along * along / window.length2 + across2 / window.width2) / window.count;
-    c.sigma = std::sqrt(variance(window) * (1 + leverage));
+    c.sigma = std::sqrt(window.variance * (1 + leverage));
     return c;
 }
 
@@ -207,30 +211,38 @@ Correspondence OctreeMap::lineAt(const Vector3d& query, const Window& window) co
     return c;
 }
 
-void OctreeMap::findWindows(const std::vector<MapPoint>& queries, int l, Executor& executor) const
+void OctreeMap::findWindows(int l) const
 {
+    // Each step waits for memory: it begins for all queries before the next one needs it.
     Level& level = levels_[static_cast<std::size_t>(l)];
-    for (std::size_t i = 0; i < queries.size(); i++)
+    for (std::size_t i = 0; i < searches_.size(); i++)
     {
         if (!searches_[i].active) continue;
-        std::array<std::uint16_t, 3> corner;
-        if (!queries[i].position.allFinite() || !cornerOf(queries[i].position, l, corner))
-        {
-            searches_[i].active = false;
-            continue;
-        }
-        Lookup& last = lookups_[i * levels_.size() + static_cast<std::size_t>(l)];
-        if (last.window == kNoWindow || last.corner != corner)
-            last = {corner, windowAt(level, corner)};
-        searches_[i].window = last.window;
-        searches_[i].last_level = static_cast<std::int8_t>(l);
-        level.prefetch(last.window);
+        const std::uint64_t corner = cornerOf(searches_[i].cell, l);
+        Lookup& last = lookup(i, l);
+        if (last.corner != corner) last = {corner, kNoWindow};
+        if (last.window == kNoWindow) level.index.prefetch(corner);
     }
+    for (std::size_t i = 0; i < searches_.size(); i++)
+    {
+        Search& search = searches_[i];
+        if (!search.active) continue;
+        Lookup& last = lookup(i, l);
+        if (last.window == kNoWindow) last.window = windowAt(level, last.corner);
+        search.window = last.window;
+        search.last_level = static_cast<std::int8_t>(l);
+        __builtin_prefetch(&level.windows[last.window]);
+    }
+}
+
+void OctreeMap::refreshStale(int l, Executor& executor) const
+{
+    Windows& windows = levels_[static_cast<std::size_t>(l)].windows;
     std::vector<std::uint32_t> stale;
     for (const Search& search : searches_)
     {
         if (!search.active) continue;
-        Window& window = level.windows[search.window];
+        Window& window = windows[search.window];
         if (!isStale(window)) continue;
         window.age = window.checked == 0 ? 0 : insertions_ - window.checked;
         window.checked = insertions_;
@@ -240,8 +252,8 @@ void OctreeMap::findWindows(const std::vector<MapPoint>& queries, int l, Executo
         stale.size(), 32,
         [&](std::size_t, std::size_t begin, std::size_t end)
         {
-            for (std::size_t i = begin; i < end; i++) locate(level.windows[stale[i]], l);
-            for (std::size_t i = begin; i < end; i++) refresh(level.windows[stale[i]], l);
+            for (std::size_t i = begin; i < end; i++) locate(windows[stale[i]], l);
+            for (std::size_t i = begin; i < end; i++) refresh(windows[stale[i]], l);
         });
 }
 
@@ -254,20 +266,21 @@ void OctreeMap::advance(Search& search, const MapPoint& query, int l) const
         search.best = search.window;
         search.best_level = static_cast<std::int8_t>(l);
         search.line = line;
+        __builtin_prefetch(&w.mean);
         search.active = line || !isThinAsNoise(w);
     };
-    if (w.count < config.min_points)
+    if (w.count == 0)
     {
         search.active = false;  // smaller windows hold still fewer
         return;
     }
     const FeatureKind kind = query.kind;
-    const bool plane = kind != FeatureKind::Edge && isPlane(w) && isOnSideOf(w, query);
+    const bool plane = kind != FeatureKind::Edge && w.plane && isOnSideOf(w, query);
     if (search.best_level < 0 || search.line)
     {
         if (plane)
             take(false);
-        else if (search.best_level < 0 && kind != FeatureKind::Plane && isLine(w))
+        else if (search.best_level < 0 && kind != FeatureKind::Plane && w.line)
             take(true);
         return;
     }
@@ -275,22 +288,27 @@ void OctreeMap::advance(Search& search, const MapPoint& query, int l) const
     // is not does not end the search: where a step runs through both, the next may lie beside it.
     const auto& best_windows = levels_[static_cast<std::size_t>(search.best_level)].windows;
     const double tolerance = config.scale_tolerance * config.scale_tolerance;
-    if (plane && variance(best_windows[search.best]) > tolerance * largestVariance(w)) take(false);
+    if (plane && best_windows[search.best].variance > tolerance * w.largest_variance) take(false);
+}
+
+OctreeMap::Search OctreeMap::searchOf(const MapPoint& query) const
+{
+    Search search;
+    search.cell = cellOf(query.position);
+    search.active = search.cell != Cell{};
+    search.kind = query.kind;
+    search.view = query.view;
+    return search;
 }
 
 bool OctreeMap::isSettled(const MapPoint& query, std::size_t i) const
 {
     const Search& search = searches_[i];
-    if (search.kind != query.kind || (search.view - query.view).squaredNorm() > kSameView ||
-        !query.position.allFinite())
+    if (search.kind != query.kind || (search.view - query.view).squaredNorm() > kSameView)
         return false;
+    const Cell cell = cellOf(query.position);
     for (int l = config.scales - 1; l >= search.last_level; l--)
-    {
-        std::array<std::uint16_t, 3> corner;
-        if (!cornerOf(query.position, l, corner) ||
-            corner != lookups_[i * levels_.size() + static_cast<std::size_t>(l)].corner)
-            return false;
-    }
+        if (cornerOf(cell, l) != lookup(i, l).corner) return false;
     return search.last_level < config.scales;
 }
 
@@ -306,15 +324,11 @@ void OctreeMap::match(
         lookups_insertion_ = insertions_;
     }
     for (std::size_t i = 0; i < queries.size(); i++)
-    {
-        if (isSettled(queries[i], i)) continue;
-        searches_[i] = {};
-        searches_[i].kind = queries[i].kind;
-        searches_[i].view = queries[i].view;
-    }
+        if (!isSettled(queries[i], i)) searches_[i] = searchOf(queries[i]);
     for (int level = config.scales - 1; level >= 0; level--)
     {
-        findWindows(queries, level, executor);
+        findWindows(level);
+        refreshStale(level, executor);
         for (std::size_t i = 0; i < queries.size(); i++)
             if (searches_[i].active) advance(searches_[i], queries[i], level);
     }

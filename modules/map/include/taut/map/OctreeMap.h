@@ -1,6 +1,5 @@
 #pragma once
 
-#include <tsl/robin_map.h>
 #include <tsl/robin_set.h>
 
 #include <array>
@@ -12,6 +11,7 @@
 
 #include "taut/core/Map.h"
 #include "taut/core/VoxelSet.h"
+#include "taut/map/KeyTable.h"
 #include "taut/map/StatisticsTree.h"
 
 namespace taut
@@ -62,46 +62,52 @@ class OctreeMap : public Map
     OctreeMapConfig config;
 
  private:
-    /** What the points of a window look like. */
-    struct Window
+    /** What the points of a window look like. In the order of need: a search reads the first 64
+     * bytes, a correspondence the next, and only the comparison with the tree the rest. */
+    struct alignas(64) Window
     {
-        std::uint32_t checked = 0;   //!< insertion after which it was last compared with the tree
-        std::uint32_t patience = 0;  //!< insertions to wait before it is compared again
+        Vector3d normal = Vector3d::UnitZ();
+        double cosine = 0;            //!< of the normal to the mean direction to the sensor
+        double variance = 0;          //!< along the normal, not below min_sigma^2 [m^2]
+        double largest_variance = 0;  //!< that it may have for all that its points say
+        double count = 0;             //!< points when it was computed; 0: not known yet
+        std::uint32_t checked = 0;    //!< insertion after which it was last compared with the tree
+        std::uint8_t patience = 0;    //!< insertions to wait before it is compared again
+        bool plane = false, line = false;  //!< it looks like one
+
+        Vector3d mean = Vector3d::Zero(), axis = Vector3d::UnitX();
+        double width2 = 0, length2 = 0;  //!< variances along the other two axes [m^2]
+
         std::uint32_t age = 0;  //!< insertions between the last two comparisons; 0: there was one
-        double seen = 0;        //!< points at the last comparison
-        double count = 0;       //!< points when it was computed; 0: not known yet
-        Vector3d mean = Vector3d::Zero(), normal = Vector3d::UnitZ(), axis = Vector3d::UnitX();
-        Vector3d view = Vector3d::Zero();  //!< mean direction to the sensor
-        double thickness2 = 0;             //!< unbiased variance along the normal [m^2]
-        double width2 = 0, length2 = 0;    //!< variances along the other two axes [m^2]
-        double min_width2 = 0;             //!< [m^2] of this size of window
         std::array<std::uint16_t, 3> corner{};
+        double seen = 0;                              //!< points at the last comparison
         std::array<StatisticsTree::Place, 8> places;  //!< of its nodes
     };
-    /** Mixes all bits of a packed key into the low ones, which alone choose the bucket. */
-    struct KeyHash
+    /** Windows by number. They stay where they are: moving them to a larger array would touch as
+     * much memory as all of them fill. */
+    class Windows
     {
-        std::size_t operator()(std::uint64_t key) const
-        {
-            key *= 0x9e3779b97f4a7c15ULL;
-            return key ^ (key >> 32);
-        }
+     public:
+        Window& operator[](std::uint32_t i) { return blocks_[i / kBlock][i % kBlock]; }
+        const Window& operator[](std::uint32_t i) const { return blocks_[i / kBlock][i % kBlock]; }
+        std::uint32_t add();
+        void remove(std::uint32_t i) { free_.push_back(i); }
+
+     private:
+        static constexpr std::uint32_t kBlock = 1024;
+        std::vector<std::unique_ptr<Window[]>> blocks_;
+        std::uint32_t size_ = 0;
+        std::vector<std::uint32_t> free_;
     };
-    using WindowIndex = tsl::robin_map<std::uint64_t, std::uint32_t, KeyHash>;
     struct Level
     {
-        WindowIndex index;
-        std::vector<Window> windows;
-        std::vector<std::uint32_t> free;
-
-        /** Has what a search reads of a window at hand when it is needed soon. */
-        void prefetch(std::uint32_t window) const
-        {
-            const char* first = reinterpret_cast<const char*>(&windows[window]);
-            for (std::size_t at = 0; at < offsetof(Window, corner); at += 64)
-                __builtin_prefetch(first + at);
-        }
+        KeyTable index;  //!< of the windows, by corner
+        Windows windows;
     };
+
+    /** The cube of half a leaf that holds a point, from the corner of all that keys name; {} where
+     * keys do not reach. It tells the nearest corners of nodes of every size. */
+    using Cell = std::array<std::uint32_t, 3>;
 
     /** The search of one query: from the largest window down. */
     struct Search
@@ -110,36 +116,42 @@ class OctreeMap : public Map
         std::int8_t best_level = -1;
         std::int8_t last_level = 127;  //!< the last one it looked at
         bool active = true, line = false;
+        Cell cell{};                          //!< of the query
         FeatureKind kind = FeatureKind::Any;  //!< of the query
         Vector3d view = Vector3d::Zero();     //!< of the query
     };
     /** Where a query of the last match() looked: iterations seldom leave a window. */
     struct Lookup
     {
-        std::array<std::uint16_t, 3> corner{};
+        std::uint64_t corner = 0;
         std::uint32_t window = kNoWindow;
     };
-    static constexpr std::uint32_t kNoWindow = 0xffffffff;
+    static constexpr std::uint32_t kNoWindow = KeyTable::kNone;
 
     void recenter(const Vector3d& center_world);
-    bool cornerOf(const Vector3d& p, int level, std::array<std::uint16_t, 3>& corner) const;
-    std::uint32_t windowAt(Level& level, const std::array<std::uint16_t, 3>& corner) const;
+    Cell cellOf(const Vector3d& p) const;
+    static std::uint64_t cornerOf(const Cell& cell, int level);
+    static std::uint32_t windowAt(Level& level, std::uint64_t corner);
     void remember(const octomap::OcTreeKey& leaf);
     bool isStale(const Window& window) const;
     void locate(Window& window, int level) const;
     void refresh(Window& window, int level) const;
     void schedule(Window& window, double count) const;
-    void compute(Window& window, const PointStatistics& statistics) const;
-    void findWindows(const std::vector<MapPoint>& queries, int level, Executor& executor) const;
+    void compute(Window& window, int level, const PointStatistics& statistics) const;
+    void findWindows(int level) const;
+    void refreshStale(int level, Executor& executor) const;
+    Search searchOf(const MapPoint& query) const;
     bool isSettled(const MapPoint& query, std::size_t i) const;
     void advance(Search& search, const MapPoint& query, int level) const;
     Correspondence planeAt(const Vector3d& query, const Window& window) const;
     Correspondence lineAt(const Vector3d& query, const Window& window) const;
-    double variance(const Window& window) const;
-    double largestVariance(const Window& window) const;
+    Lookup& lookup(std::size_t query, int level) const
+    {
+        return lookups_[query * levels_.size() + static_cast<std::size_t>(level)];
+    }
     bool isThinAsNoise(const Window& window) const;
     void learnRangeNoise() const;
-    bool isPlane(const Window& window) const;
+    bool isPlane(const Window& window, int level, double thickness2) const;
     bool isLine(const Window& window) const;
     static bool isOnSideOf(const Window& window, const MapPoint& query);
     unsigned blockDepth() const;
@@ -154,7 +166,7 @@ class OctreeMap : public Map
     mutable double range_noise_ = 0;  //!< [m] as the planes of the last match() show it
     std::uint32_t insertions_ = 0;
     VoxelSet ripe_;  //!< nodes that hold enough to take a share of what comes, for all of it
-    tsl::robin_set<std::uint64_t, KeyHash> blocks_;  // coarse nodes that exist, for slide()
+    tsl::robin_set<std::uint64_t, VoxelHash> blocks_;  // coarse nodes that exist, for slide()
     Vector3d last_center_ = Vector3d::Constant(1e300);
     /** Where the keys begin [m]: octomap names 2^16 leaves a side, which moves with the body. */
     Vector3d origin_ = Vector3d::Zero();
