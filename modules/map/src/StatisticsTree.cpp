@@ -1,31 +1,10 @@
 #include "taut/map/StatisticsTree.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace taut
 {
-void PointStatistics::add(const Eigen::Vector3d& p, const Eigen::Vector3d& view, double weight)
-{
-    const Eigen::Vector3d wp = weight * p;
-    count += weight;
-    views += weight * view;
-    sum += wp;
-    moments[0] += wp.x() * p.x();
-    moments[1] += wp.x() * p.y();
-    moments[2] += wp.x() * p.z();
-    moments[3] += wp.y() * p.y();
-    moments[4] += wp.y() * p.z();
-    moments[5] += wp.z() * p.z();
-}
-
-void PointStatistics::add(const PointStatistics& other)
-{
-    count += other.count;
-    sum += other.sum;
-    moments += other.moments;
-    views += other.views;
-}
-
 Eigen::Matrix3d PointStatistics::scatter() const
 {
     Eigen::Matrix3d m;
@@ -81,14 +60,6 @@ std::uint64_t StatisticsTree::wayTo(const octomap::OcTreeKey& key)
     return spread(key[0]) | spread(key[1]) << 1 | spread(key[2]) << 2;
 }
 
-StatisticsNode& StatisticsNode::makeChild(unsigned i, bool& is_new)
-{
-    if (children == nullptr) allocChildren();
-    is_new = children[i] == nullptr;
-    if (is_new) children[i] = new StatisticsNode();
-    return *static_cast<StatisticsNode*>(children[i]);
-}
-
 void StatisticsTree::remove(const octomap::OcTreeKey& key, unsigned depth)
 {
     const StatisticsNode* node = find(key, depth);
@@ -98,16 +69,36 @@ void StatisticsTree::remove(const octomap::OcTreeKey& key, unsigned depth)
     if (!nodeHasChildren(root)) clear();
 }
 
+StatisticsTree::Place StatisticsTree::approachTogether(
+    const octomap::OcTreeKey* keys, unsigned count, unsigned depth) const
+{
+    unsigned differing = 0;
+    for (unsigned i = 1; i < count; i++)
+        for (unsigned k = 0; k < 3; k++) differing |= keys[i][k] ^ keys[0][k];
+    Place place{root, 0};
+    for (; place.depth < depth && differing >> (kDepth - place.depth - 1) == 0; place.depth++)
+    {
+        const unsigned child =
+            octomap::computeChildIdx(keys[0], static_cast<int>(kDepth - place.depth - 1));
+        if (!nodeChildExists(place.node, child)) break;
+        place.node = getNodeChild(place.node, child);
+    }
+    return place;
+}
+
 void StatisticsTree::approach(
     const octomap::OcTreeKey* keys, unsigned count, unsigned depth, Place* places) const
 {
     if (root == nullptr) return;
+    if (std::any_of(places, places + count, [](const Place& p) { return p.node == nullptr; }))
+    {
+        const Place shared = approachTogether(keys, count, depth);
+        for (unsigned i = 0; i < count; i++)
+            if (places[i].node == nullptr) places[i] = shared;
+    }
     std::uint32_t on_the_way = 0;
     for (unsigned i = 0; i < count; i++)
-    {
-        if (places[i].node == nullptr) places[i] = {root, 0};
         if (places[i].depth < depth) on_the_way |= 1u << i;
-    }
     while (on_the_way != 0)
         for (unsigned i = 0; i < count; i++)
         {
@@ -133,48 +124,67 @@ const StatisticsNode* StatisticsTree::find(const octomap::OcTreeKey& key, unsign
 }
 
 const StatisticsTree::Entry* StatisticsTree::childEnd(
-    const Entry* begin, const Entry* end, unsigned depth) const
+    const Entry* begin, const Entry* end, unsigned depth)
 {
     const unsigned child = childOf(*begin, depth);
     return std::find_if(begin, end, [&](const Entry& e) { return childOf(e, depth) != child; });
 }
 
-void StatisticsTree::sort(Entries& entries, Executor& executor)
+void StatisticsTree::sort(Entries& entries)
 {
-    const auto before = [](const Entry& a, const Entry& b)
-    { return a.way != b.way ? a.way < b.way : a.index < b.index; };
-    const std::size_t half = (entries.size() + 1) / 2;
-    const auto at = [&](std::size_t i) { return entries.begin() + static_cast<std::ptrdiff_t>(i); };
-    executor.forChunks(
-        entries.size(), half,
-        [&](std::size_t, std::size_t begin, std::size_t end)
-        { std::sort(at(begin), at(end), before); });
-    std::inplace_merge(entries.begin(), at(half), entries.end(), before);
+    // By one byte of the ways after the other, from the lowest: each time the order within equal
+    // bytes stays. Few bytes differ, and for thousands of entries this is faster than comparing.
+    std::uint64_t differing = 0;
+    for (const Entry& e : entries) differing |= e.way ^ entries.front().way;
+    Entries sorted(entries.size());
+    for (unsigned shift = 0; shift < 64; shift += 8)
+    {
+        if ((differing >> shift & 0xff) == 0) continue;
+        std::array<std::uint32_t, 257> begin{};
+        for (const Entry& e : entries) begin[(e.way >> shift & 0xff) + 1]++;
+        std::partial_sum(begin.begin(), begin.end(), begin.begin());
+        for (const Entry& e : entries) sorted[begin[e.way >> shift & 0xff]++] = e;
+        entries.swap(sorted);
+    }
 }
 
-std::vector<StatisticsTree::Subtree> StatisticsTree::subtreesOf(
-    const Entries& entries, unsigned depth)
+std::size_t StatisticsTree::split(const Branches& branches, unsigned depth, Branches& below)
+{
+    constexpr std::size_t kAhead = 4;  // so many branches wait for memory at a time
+    std::size_t created = 0;
+    below.clear();
+    below.reserve(branches.size());
+    for (std::size_t i = 0; i < branches.size(); i++)
+    {
+        if (i + kAhead < branches.size()) branches[i + kAhead].node->prefetchChildren();
+        const Branch& b = branches[i];
+        for (const Entry* e = b.begin; e != b.end;)
+        {
+            const Entry* end = childEnd(e, b.end, depth);
+            bool is_new = false;
+            StatisticsNode& child = b.node->makeChild(childOf(*e, depth), is_new);
+            child.prefetch();
+            created += is_new;
+            below.push_back({&child, e, end, i});
+            e = end;
+        }
+    }
+    return created;
+}
+
+StatisticsTree::Branches StatisticsTree::branchesOf(const Entries& entries, unsigned depth)
 {
     if (root == nullptr)
     {
         root = new StatisticsNode();
         tree_size++;
     }
-    std::vector<Subtree> level{{root, entries.data(), entries.data() + entries.size(), 0, {}}};
+    Branches branches{{root, entries.data(), entries.data() + entries.size()}}, below;
     for (unsigned d = 0; d < depth; d++)
     {
-        std::vector<Subtree> next;
-        for (const Subtree& s : level)
-            for (const Entry* e = s.begin; e != s.end;)
-            {
-                const Entry* end = childEnd(e, s.end, d);
-                bool is_new = false;
-                next.push_back({&s.node->makeChild(childOf(*e, d), is_new), e, end, 0, {}});
-                tree_size += is_new;
-                e = end;
-            }
-        level = std::move(next);
+        tree_size += split(branches, d, below);
+        branches.swap(below);
     }
-    return level;
+    return branches;
 }
 }  // namespace taut

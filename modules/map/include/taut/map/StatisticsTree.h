@@ -25,8 +25,26 @@ struct PointStatistics
 
     void add(
         const Eigen::Vector3d& p, const Eigen::Vector3d& view = Eigen::Vector3d::Zero(),
-        double weight = 1);
-    void add(const PointStatistics& other);
+        double weight = 1)
+    {
+        const Eigen::Vector3d wp = weight * p;
+        count += weight;
+        views += weight * view;
+        sum += wp;
+        moments[0] += wp.x() * p.x();
+        moments[1] += wp.x() * p.y();
+        moments[2] += wp.x() * p.z();
+        moments[3] += wp.y() * p.y();
+        moments[4] += wp.y() * p.z();
+        moments[5] += wp.z() * p.z();
+    }
+    void add(const PointStatistics& other)
+    {
+        count += other.count;
+        sum += other.sum;
+        moments += other.moments;
+        views += other.views;
+    }
     Eigen::Vector3d mean() const { return sum / count; }
     /** Sum of (p - mean)(p - mean)^T. */
     Eigen::Matrix3d scatter() const;
@@ -51,7 +69,13 @@ class StatisticsNode : public octomap::OcTreeDataNode<PointStatistics>
     std::size_t subtreeSize() const;
 
     /** The child, made if it is not there. The tree must be told of new nodes. */
-    StatisticsNode& makeChild(unsigned i, bool& is_new);
+    StatisticsNode& makeChild(unsigned i, bool& is_new)
+    {
+        if (children == nullptr) allocChildren();
+        is_new = children[i] == nullptr;
+        if (is_new) children[i] = new StatisticsNode();
+        return *static_cast<StatisticsNode*>(children[i]);
+    }
 
     /** Have the memory of the node, or of what leads to its children, at hand when it is needed. */
     void prefetch() const
@@ -128,25 +152,34 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
         Executor& executor);
 
  private:
-    /** A subtree whose nodes have statistics, and the entries that belong to it. */
-    struct Subtree
+    /** A node and the entries on their way through it. */
+    struct Branch
     {
         StatisticsNode* node = nullptr;
         const Entry *begin = nullptr, *end = nullptr;
+        std::size_t parent = 0;  //!< its place among the branches one depth above
+        PointStatistics added{};
+    };
+    using Branches = std::vector<Branch>;
+    /** What comes of filling some subtrees. */
+    struct Filled
+    {
         std::size_t created = 0;          //!< nodes
         std::vector<std::uint32_t> ripe;  //!< an index of each ripe node
     };
-    static void sort(Entries& entries, Executor& executor);
-    std::vector<Subtree> subtreesOf(const Entries& entries, unsigned depth);
+    /** As far as the ways to several keys are the same. */
+    Place approachTogether(const octomap::OcTreeKey* keys, unsigned count, unsigned depth) const;
+    static void sort(Entries& entries);
+    Branches branchesOf(const Entries& entries, unsigned depth);
+    static std::size_t split(const Branches& branches, unsigned depth, Branches& below);
     template <class Put>
-    PointStatistics fill(
-        StatisticsNode& node, unsigned depth, const Entry* begin, const Entry* end,
-        const Ripeness& ripeness, const Put& put, Subtree& whole);
-    const Entry* childEnd(const Entry* begin, const Entry* end, unsigned depth) const;
-    unsigned childOf(const Entry& entry, unsigned depth) const
+    static Filled fill(Branches subtrees, unsigned depth, const Ripeness& ripeness, const Put& put);
+    static const Entry* childEnd(const Entry* begin, const Entry* end, unsigned depth);
+    static unsigned childOf(const Entry& entry, unsigned depth)
     {
-        return static_cast<unsigned>(entry.way >> 3 * (tree_depth - depth - 1) & 7);
+        return static_cast<unsigned>(entry.way >> 3 * (kDepth - depth - 1) & 7);
     }
+    static constexpr unsigned kDepth = 16;  // of every octomap tree
 };
 
 template <class Put>
@@ -155,68 +188,49 @@ std::vector<std::uint32_t> StatisticsTree::add(
     Executor& executor)
 {
     if (entries.empty()) return {};
-    sort(entries, executor);
-    std::vector<Subtree> subtrees = subtreesOf(entries, from_depth);
+    sort(entries);
+    const Branches subtrees = branchesOf(entries, from_depth);
+    constexpr std::size_t kChunk = 16;
+    std::vector<Filled> filled(Executor::chunks(subtrees.size(), kChunk));
     executor.forChunks(
-        subtrees.size(), 8,
-        [&](std::size_t, std::size_t begin, std::size_t end)
+        subtrees.size(), kChunk,
+        [&](std::size_t chunk, std::size_t begin, std::size_t end)
         {
-            for (std::size_t i = begin; i < end; i++)
-            {
-                Subtree& s = subtrees[i];
-                fill(*s.node, from_depth, s.begin, s.end, ripeness, put, s);
-            }
+            filled[chunk] = fill(
+                Branches(subtrees.data() + begin, subtrees.data() + end), from_depth, ripeness,
+                put);
         });
     std::vector<std::uint32_t> ripe;
-    for (const Subtree& s : subtrees)
+    for (const Filled& f : filled)
     {
-        tree_size += s.created;
-        ripe.insert(ripe.end(), s.ripe.begin(), s.ripe.end());
+        tree_size += f.created;
+        ripe.insert(ripe.end(), f.ripe.begin(), f.ripe.end());
     }
     size_changed = true;
     return ripe;
 }
 
 template <class Put>
-PointStatistics StatisticsTree::fill(
-    StatisticsNode& node, unsigned depth, const Entry* begin, const Entry* end,
-    const Ripeness& ripeness, const Put& put, Subtree& whole)
+StatisticsTree::Filled StatisticsTree::fill(
+    Branches subtrees, unsigned depth, const Ripeness& ripeness, const Put& put)
 {
-    const std::uint32_t first = begin->index;
-    PointStatistics added;
-    if (depth == tree_depth)
+    // Depth by depth, not branch by branch: each node waits for memory, and these waits overlap.
+    Filled filled;
+    std::array<Branches, kDepth + 1> at;
+    at[depth] = std::move(subtrees);
+    for (unsigned d = depth; d < kDepth; d++) filled.created += split(at[d], d, at[d + 1]);
+    for (Branch& leaf : at[kDepth])
+        for (const Entry* e = leaf.begin; e != leaf.end; ++e) put(e->index, leaf.added);
+    for (unsigned d = kDepth;; d--)
     {
-        for (const Entry* e = begin; e != end; ++e) put(e->index, added);
-    }
-    else
-    {
-        struct Branch
+        for (const Branch& b : at[d])
         {
-            StatisticsNode* node;
-            const Entry *begin, *end;
-        };
-        std::array<Branch, 8> below;
-        std::size_t children = 0;
-        while (begin != end)
-        {
-            const Entry* next = childEnd(begin, end, depth);
-            bool is_new = false;
-            StatisticsNode& child = node.makeChild(childOf(*begin, depth), is_new);
-            child.prefetch();
-            whole.created += is_new;
-            below[children++] = {&child, begin, next};
-            begin = next;
+            b.node->statistics().add(b.added);
+            if (d > depth) at[d - 1][b.parent].added.add(b.added);
+            if (d == ripeness.depth && b.node->statistics().count >= ripeness.points)
+                filled.ripe.push_back(b.begin->index);
         }
-        for (std::size_t i = 0; i < children; i++)
-        {
-            if (i + 1 < children) below[i + 1].node->prefetchChildren();
-            const Branch& b = below[i];
-            added.add(fill(*b.node, depth + 1, b.begin, b.end, ripeness, put, whole));
-        }
+        if (d == depth) return filled;
     }
-    node.statistics().add(added);
-    if (depth == ripeness.depth && node.statistics().count >= ripeness.points)
-        whole.ripe.push_back(first);
-    return added;
 }
 }  // namespace taut
