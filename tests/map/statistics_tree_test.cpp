@@ -23,8 +23,8 @@ struct FilledTree
 
     void add(const Eigen::Vector3d& p) { add(std::vector{p}); }
 
-    /** Gives the indices of a point in each ripe node. */
-    std::vector<std::uint32_t> add(
+    /** Gives the way of a point in each ripe node. */
+    std::vector<std::uint64_t> add(
         const std::vector<Eigen::Vector3d>& points, int threads = 1,
         const StatisticsTree::Ripeness& ripeness = {})
     {
@@ -34,7 +34,8 @@ struct FilledTree
         Executor executor(threads);
         return tree.add(
             entries, from_depth, ripeness,
-            [&](std::uint32_t i, PointStatistics& sum) { sum.add(points[i]); }, executor);
+            [&](const StatisticsTree::Entry& e, PointStatistics& sum) { sum.add(points[e.index]); },
+            executor);
     }
 
     octomap::OcTreeKey keyOf(const Eigen::Vector3d& p) const
@@ -134,6 +135,17 @@ TEST(StatisticsTree, ManyPointsAtOnceAreTheSameAsOneAfterTheOther)
     }
 }
 
+TEST(StatisticsTree, AWayLeadsBackToItsLeaf)
+{
+    for (unsigned i = 0; i < 0x10000; i += 257)
+    {
+        const octomap::OcTreeKey key(
+            static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(0xffff - i),
+            static_cast<std::uint16_t>(i * 31));
+        EXPECT_EQ(StatisticsTree::endOf(StatisticsTree::wayTo(key)), key);
+    }
+}
+
 TEST(StatisticsTree, ASearchGoesOnWhereTheLastOneEnded)
 {
     FilledTree filled;
@@ -193,8 +205,8 @@ TEST(StatisticsTree, TellsWhichNodesAreRipe)
     for (int round = 0; round < 2; round++)
     {
         std::vector<const StatisticsNode*> ripe;
-        for (const std::uint32_t i : filled.add(points, 2, {depth, 100}))
-            ripe.push_back(filled.find(points[i], depth));
+        for (const std::uint64_t way : filled.add(points, 2, {depth, 100}))
+            ripe.push_back(filled.tree.find(StatisticsTree::endOf(way), depth));
         for (const auto& p : points)
         {
             const StatisticsNode* node = filled.find(p, depth);

@@ -23,11 +23,6 @@ std::uint64_t ripeKey(const octomap::OcTreeKey& leaf)
     return std::uint64_t{leaf[0]} >> kRipeLevel << 42 | std::uint64_t{leaf[1]} >> kRipeLevel << 21 |
            std::uint64_t{leaf[2]} >> kRipeLevel;
 }
-
-octomap::point3d toOctomap(const Vector3d& p)
-{
-    return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
-}
 }  // namespace
 
 OctreeMap::OctreeMap()
@@ -95,43 +90,64 @@ unsigned OctreeMap::blockDepth() const
 
 void OctreeMap::insert(const std::vector<MapPoint>& points, Executor& executor)
 {
-    const unsigned above_leaf = kTreeDepth - blockDepth();
-    std::vector<octomap::OcTreeKey> keys(points.size());
-    std::vector<double> weights(points.size(), 0);
+    entries_.resize(points.size());
     executor.forChunks(
         points.size(), 1024,
         [&](std::size_t, std::size_t begin, std::size_t end)
         {
             for (std::size_t i = begin; i < end; i++)
-                if (points[i].position.allFinite() &&
-                    tree_->coordToKeyChecked(toOctomap(points[i].position - origin_), keys[i]))
-                    weights[i] = weightOf(keys[i], static_cast<std::uint32_t>(i));
+                entries_[i] = entryOf(points[i].position, static_cast<std::uint32_t>(i));
         });
-    StatisticsTree::Entries entries;
-    entries.reserve(points.size());
-    std::uint64_t last_block = ~std::uint64_t{0};
-    for (std::uint32_t i = 0; i < points.size(); i++)
-    {
-        if (weights[i] == 0) continue;
-        entries.push_back({StatisticsTree::wayTo(keys[i]), i});
-        const std::uint64_t block = entries.back().way >> 3 * above_leaf;
-        if (block != last_block) remember(keys[i]);
-        last_block = block;
-    }
-    const std::vector<std::uint32_t> ripe = tree_->add(
-        std::move(entries), depthOf(config.scales - 1), {depthOf(kRipeLevel), config.ripe_points},
-        [&](std::uint32_t i, PointStatistics& sum)
-        { sum.add(points[i].position, points[i].view, weights[i]); },
+    const auto dropped = [](const StatisticsTree::Entry& e) { return e.weight == 0; };
+    entries_.erase(std::remove_if(entries_.begin(), entries_.end(), dropped), entries_.end());
+    const std::vector<std::uint64_t> ripe = tree_->add(
+        entries_, depthOf(config.scales - 1), {depthOf(kRipeLevel), config.ripe_points},
+        [&](const StatisticsTree::Entry& e, PointStatistics& sum)
+        { sum.add(points[e.index].position, points[e.index].view, e.weight); },
         executor);
-    for (const std::uint32_t i : ripe) ripe_.insert(ripeKey(keys[i]));
+    for (const std::uint64_t way : ripe) ripe_.insert(ripeKey(StatisticsTree::endOf(way)));
+    rememberBlocks(entries_);
     insertions_++;
 }
 
-double OctreeMap::weightOf(const octomap::OcTreeKey& leaf, std::uint32_t point) const
+bool OctreeMap::leafOf(const Vector3d& p, octomap::OcTreeKey& leaf) const
+{
+    // As octomap does; its std::floor takes more time than all the rest.
+    for (unsigned i = 0; i < 3; i++)
+    {
+        const double scaled = static_cast<float>(p[i] - origin_[i]) * (1 / config.leaf_size);
+        if (!(scaled >= -kMiddleKey && scaled < kMiddleKey)) return false;
+        const int towards_zero = static_cast<int>(scaled);
+        leaf[i] =
+            static_cast<std::uint16_t>(towards_zero - (scaled < towards_zero ? 1 : 0) + kMiddleKey);
+    }
+    return true;
+}
+
+StatisticsTree::Entry OctreeMap::entryOf(const Vector3d& p, std::uint32_t index) const
+{
+    octomap::OcTreeKey leaf;
+    if (!leafOf(p, leaf)) return {0, index, 0};
+    return {StatisticsTree::wayTo(leaf), index, weightOf(leaf, index)};
+}
+
+std::uint32_t OctreeMap::weightOf(const octomap::OcTreeKey& leaf, std::uint32_t point) const
 {
     if (!ripe_.contains(ripeKey(leaf))) return 1;
     const std::uint64_t lot = mixBits(std::uint64_t{insertions_} << 32 | point);
     return lot % kRipeShare == 0 ? kRipeShare : 0;
+}
+
+void OctreeMap::rememberBlocks(const StatisticsTree::Entries& sorted)
+{
+    const unsigned above_leaf = kTreeDepth - blockDepth();
+    std::uint64_t last_block = ~std::uint64_t{0};
+    for (const StatisticsTree::Entry& e : sorted)
+    {
+        const std::uint64_t block = e.way >> 3 * above_leaf;
+        if (block != last_block) remember(StatisticsTree::endOf(e.way));
+        last_block = block;
+    }
 }
 
 void OctreeMap::remember(const octomap::OcTreeKey& leaf)
@@ -206,13 +222,14 @@ void OctreeMap::recenter(const Vector3d& center_world)
             static_cast<std::uint16_t>(old[2] - shift[2]));
         entries.push_back({StatisticsTree::wayTo(key), static_cast<std::uint32_t>(leaves.size())});
         leaves.push_back(it->statistics());
-        remember(key);
     }
     tree_ = std::make_unique<StatisticsTree>(config.leaf_size);
     levels_ = std::vector<Level>(levels_.size());
     Executor single;
     tree_->add(
-        std::move(entries), depthOf(config.scales - 1), {},
-        [&](std::uint32_t i, PointStatistics& sum) { sum.add(leaves[i]); }, single);
+        entries, depthOf(config.scales - 1), {},
+        [&](const StatisticsTree::Entry& e, PointStatistics& sum) { sum.add(leaves[e.index]); },
+        single);
+    rememberBlocks(entries);
 }
 }  // namespace taut

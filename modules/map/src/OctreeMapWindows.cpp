@@ -17,7 +17,6 @@ constexpr double kThin = 0.1;              // quantile of the planes that tells 
 constexpr std::uint32_t kYoung = 30;       // insertions: a young map is as thick as it is wrong
 constexpr double kSameView = 1e-3;         // squared, between iterations
 constexpr double kGrazing = 0.05;          // cosine to the normal
-constexpr double kMiddleKey = 32768;       // of a leaf, at the origin
 constexpr double kMargin = 256;            // [leaves] more than half a window
 }  // namespace
 

@@ -53,11 +53,27 @@ std::uint64_t spread(std::uint64_t bits)
     bits = (bits | bits << 4) & 0x10c30c30c30c30c3;
     return (bits | bits << 2) & 0x1249249249249249;
 }
+
+/** Takes the zero bits out again. */
+std::uint16_t gather(std::uint64_t bits)
+{
+    bits &= 0x1249249249249249;
+    bits = (bits | bits >> 2) & 0x10c30c30c30c30c3;
+    bits = (bits | bits >> 4) & 0x100f00f00f00f00f;
+    bits = (bits | bits >> 8) & 0x001f0000ff0000ff;
+    bits = (bits | bits >> 16) & 0x001f00000000ffff;
+    return static_cast<std::uint16_t>(bits | bits >> 32);
+}
 }  // namespace
 
 std::uint64_t StatisticsTree::wayTo(const octomap::OcTreeKey& key)
 {
     return spread(key[0]) | spread(key[1]) << 1 | spread(key[2]) << 2;
+}
+
+octomap::OcTreeKey StatisticsTree::endOf(std::uint64_t way)
+{
+    return {gather(way), gather(way >> 1), gather(way >> 2)};
 }
 
 void StatisticsTree::remove(const octomap::OcTreeKey& key, unsigned depth)
@@ -136,21 +152,21 @@ void StatisticsTree::sort(Entries& entries)
     // bytes stays. Few bytes differ, and for thousands of entries this is faster than comparing.
     std::uint64_t differing = 0;
     for (const Entry& e : entries) differing |= e.way ^ entries.front().way;
-    Entries sorted(entries.size());
+    sorted_.resize(entries.size());
     for (unsigned shift = 0; shift < 64; shift += 8)
     {
         if ((differing >> shift & 0xff) == 0) continue;
         std::array<std::uint32_t, 257> begin{};
         for (const Entry& e : entries) begin[(e.way >> shift & 0xff) + 1]++;
         std::partial_sum(begin.begin(), begin.end(), begin.begin());
-        for (const Entry& e : entries) sorted[begin[e.way >> shift & 0xff]++] = e;
-        entries.swap(sorted);
+        for (const Entry& e : entries) sorted_[begin[e.way >> shift & 0xff]++] = e;
+        entries.swap(sorted_);
     }
 }
 
 std::size_t StatisticsTree::split(const Branches& branches, unsigned depth, Branches& below)
 {
-    constexpr std::size_t kAhead = 4;  // so many branches wait for memory at a time
+    constexpr std::size_t kAhead = 8;  // so many branches wait for memory at a time
     std::size_t created = 0;
     below.clear();
     below.reserve(branches.size());

@@ -7,6 +7,7 @@
 namespace taut
 {
 constexpr unsigned kTreeDepth = 16;  // of every octomap tree
+constexpr int kMiddleKey = 32768;    // of the leaf at the origin
 
 /** A key of octomap as one integer, for hash tables. */
 inline std::uint64_t pack(std::uint16_t x, std::uint16_t y, std::uint16_t z)

@@ -204,7 +204,8 @@ void Odometry::insert(const Scan& scan, const SweepPath& path, ScanResult& resul
         scan.points.begin(), scan.points.end(),
         [](const LidarPoint& a, const LidarPoint& b) { return a.offset < b.offset; });
     const SampledPath poses(path, scan.timeOf(*first), scan.timeOf(*last));
-    std::vector<MapPoint> points(kept);
+    inserted_.resize(kept);
+    result.points.resize(kept);
     executor_.forChunks(
         kept, 1024,
         [&](std::size_t, std::size_t chunk_begin, std::size_t chunk_end)
@@ -213,12 +214,11 @@ void Odometry::insert(const Scan& scan, const SweepPath& path, ScanResult& resul
             {
                 const LidarPoint& p = scan.points[i * stride];
                 const Pose pose = poses.poseAt(scan.timeOf(p));
-                points[i].position = pose * Vector3d(p.position.cast<double>());
-                points[i].view = (pose.p - points[i].position).normalized();
+                const Vector3d position = pose * Vector3d(p.position.cast<double>());
+                inserted_[i] = {position, FeatureKind::Any, (pose.p - position).normalized()};
+                result.points[i] = position;
             }
         });
-    config_.map->insert(points, executor_);
-    result.points.resize(kept);
-    for (std::size_t i = 0; i < kept; i++) result.points[i] = points[i].position;
+    config_.map->insert(inserted_, executor_);
 }
 }  // namespace taut

@@ -133,6 +133,7 @@ class OctreeMap : public Map
     static std::uint64_t cornerOf(const Cell& cell, int level);
     static std::uint32_t windowAt(Level& level, std::uint64_t corner);
     void remember(const octomap::OcTreeKey& leaf);
+    void rememberBlocks(const StatisticsTree::Entries& sorted);
     bool isStale(const Window& window) const;
     void locate(Window& window, int level) const;
     void refresh(Window& window, int level) const;
@@ -155,9 +156,12 @@ class OctreeMap : public Map
     bool isLine(const Window& window) const;
     static bool isOnSideOf(const Window& window, const MapPoint& query);
     unsigned blockDepth() const;
-    double weightOf(const octomap::OcTreeKey& leaf, std::uint32_t point) const;
+    bool leafOf(const Vector3d& p, octomap::OcTreeKey& leaf) const;
+    StatisticsTree::Entry entryOf(const Vector3d& p, std::uint32_t index) const;
+    std::uint32_t weightOf(const octomap::OcTreeKey& leaf, std::uint32_t point) const;
 
     std::unique_ptr<StatisticsTree> tree_;
+    StatisticsTree::Entries entries_;    // of the last insertion; kept, since fresh memory is slow
     mutable std::vector<Level> levels_;  // a cache: its content follows from the tree
     // The last match(): good for the next one until the map changes.
     mutable std::vector<Search> searches_;

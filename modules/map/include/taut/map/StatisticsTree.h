@@ -83,7 +83,11 @@ class StatisticsNode : public octomap::OcTreeDataNode<PointStatistics>
         __builtin_prefetch(this);
         __builtin_prefetch(reinterpret_cast<const char*>(this + 1) - 1);
     }
-    void prefetchChildren() const { __builtin_prefetch(children); }
+    void prefetchChildren() const
+    {
+        __builtin_prefetch(children);
+        __builtin_prefetch(children + 7);
+    }
 
     PointStatistics& statistics() { return value; }
     const PointStatistics& statistics() const { return value; }
@@ -126,14 +130,17 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
     /** Something to be added to a leaf. */
     struct Entry
     {
-        std::uint64_t way = 0;    //!< wayTo() the leaf
-        std::uint32_t index = 0;  //!< of what is to be added
+        std::uint64_t way = 0;     //!< wayTo() the leaf
+        std::uint32_t index = 0;   //!< of what is to be added
+        std::uint32_t weight = 1;  //!< how often
     };
     using Entries = std::vector<Entry>;
 
     /** The children from the root to a leaf, three bits each (Morton code): leaves in this order
      * are neighbours in the tree. */
     static std::uint64_t wayTo(const octomap::OcTreeKey& key);
+    /** The leaf that a way leads to. */
+    static octomap::OcTreeKey endOf(std::uint64_t way);
 
     /** A node at this depth is ripe when it holds this many points. */
     struct Ripeness
@@ -142,13 +149,13 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
         double points = 0;
     };
 
-    /** Adds to leaves, and to their ancestors from the given depth down, what `put(index,
+    /** Adds to leaves, and to their ancestors from the given depth down, what `put(entry,
      * statistics)` adds for each entry. Every node is visited once, in the order of the entries'
-     * ways: the sums do not depend on threads. Gives the index of an entry of each node that it
-     * leaves ripe. */
+     * ways: the sums do not depend on threads. Sorts the entries in that order. Gives the way of an
+     * entry of each node that it leaves ripe. */
     template <class Put>
-    std::vector<std::uint32_t> add(
-        Entries entries, unsigned from_depth, const Ripeness& ripeness, const Put& put,
+    std::vector<std::uint64_t> add(
+        Entries& entries, unsigned from_depth, const Ripeness& ripeness, const Put& put,
         Executor& executor);
 
  private:
@@ -158,18 +165,17 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
         StatisticsNode* node = nullptr;
         const Entry *begin = nullptr, *end = nullptr;
         std::size_t parent = 0;  //!< its place among the branches one depth above
-        PointStatistics added{};
     };
     using Branches = std::vector<Branch>;
     /** What comes of filling some subtrees. */
     struct Filled
     {
         std::size_t created = 0;          //!< nodes
-        std::vector<std::uint32_t> ripe;  //!< an index of each ripe node
+        std::vector<std::uint64_t> ripe;  //!< a way through each ripe node
     };
     /** As far as the ways to several keys are the same. */
     Place approachTogether(const octomap::OcTreeKey* keys, unsigned count, unsigned depth) const;
-    static void sort(Entries& entries);
+    void sort(Entries& entries);
     Branches branchesOf(const Entries& entries, unsigned depth);
     static std::size_t split(const Branches& branches, unsigned depth, Branches& below);
     template <class Put>
@@ -180,17 +186,19 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
         return static_cast<unsigned>(entry.way >> 3 * (kDepth - depth - 1) & 7);
     }
     static constexpr unsigned kDepth = 16;  // of every octomap tree
+
+    Entries sorted_;  // while sorting; kept, since fresh memory is slow
 };
 
 template <class Put>
-std::vector<std::uint32_t> StatisticsTree::add(
-    Entries entries, unsigned from_depth, const Ripeness& ripeness, const Put& put,
+std::vector<std::uint64_t> StatisticsTree::add(
+    Entries& entries, unsigned from_depth, const Ripeness& ripeness, const Put& put,
     Executor& executor)
 {
     if (entries.empty()) return {};
     sort(entries);
     const Branches subtrees = branchesOf(entries, from_depth);
-    constexpr std::size_t kChunk = 16;
+    constexpr std::size_t kChunk = 8;
     std::vector<Filled> filled(Executor::chunks(subtrees.size(), kChunk));
     executor.forChunks(
         subtrees.size(), kChunk,
@@ -200,7 +208,7 @@ std::vector<std::uint32_t> StatisticsTree::add(
                 Branches(subtrees.data() + begin, subtrees.data() + end), from_depth, ripeness,
                 put);
         });
-    std::vector<std::uint32_t> ripe;
+    std::vector<std::uint64_t> ripe;
     for (const Filled& f : filled)
     {
         tree_size += f.created;
@@ -219,18 +227,22 @@ StatisticsTree::Filled StatisticsTree::fill(
     std::array<Branches, kDepth + 1> at;
     at[depth] = std::move(subtrees);
     for (unsigned d = depth; d < kDepth; d++) filled.created += split(at[d], d, at[d + 1]);
-    for (Branch& leaf : at[kDepth])
-        for (const Entry* e = leaf.begin; e != leaf.end; ++e) put(e->index, leaf.added);
+    std::vector<PointStatistics> added(at[kDepth].size()), above;
+    for (std::size_t i = 0; i < added.size(); i++)
+        for (const Entry* e = at[kDepth][i].begin; e != at[kDepth][i].end; ++e) put(*e, added[i]);
     for (unsigned d = kDepth;; d--)
     {
-        for (const Branch& b : at[d])
+        if (d > depth) above.assign(at[d - 1].size(), {});
+        for (std::size_t i = 0; i < added.size(); i++)
         {
-            b.node->statistics().add(b.added);
-            if (d > depth) at[d - 1][b.parent].added.add(b.added);
+            const Branch& b = at[d][i];
+            b.node->statistics().add(added[i]);
+            if (d > depth) above[b.parent].add(added[i]);
             if (d == ripeness.depth && b.node->statistics().count >= ripeness.points)
-                filled.ripe.push_back(b.begin->index);
+                filled.ripe.push_back(b.begin->way);
         }
         if (d == depth) return filled;
+        added.swap(above);
     }
 }
 }  // namespace taut

@@ -79,5 +79,6 @@ class Odometry
     /** Shares of late: of the features that are matched and explained, and of the matches that are.
      * 0: not known yet. */
     double usual_explained_ = 0, usual_fit_ = 0;
+    std::vector<MapPoint> inserted_;  // with the last scan; kept, since fresh memory is slow
 };
 }  // namespace taut
