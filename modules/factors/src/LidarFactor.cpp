@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 
 #include "taut/factors/SampledPath.h"
 
@@ -14,27 +15,28 @@ constexpr std::size_t kPointChunk = 512;
 constexpr Duration kNodeSpacing = 5'000'000;  // [ns] between exact derivatives of the path
 constexpr int kPathSize = 2 * NavState::kSize;
 
-/** Rows that project a difference on what the surface measures: n^T of a plane; two unit vectors
+/** Unit vectors that project a difference on what the surface measures: the normal of a plane; two
  * across a line, which span the same as the paper's n^ . */
-Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor, 2, 3> projection(const Correspondence& c)
+struct Projection
 {
-    Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor, 2, 3> P;
-    if (c.surface == Surface::Plane)
+    explicit Projection(const Correspondence& c)
     {
-        P.resize(1, 3);
-        P = c.direction.transpose();
+        if (c.surface == Surface::Plane)
+        {
+            rows[0] = c.direction;
+            return;
+        }
+        rows[0] = c.direction.unitOrthogonal();
+        rows[1] = c.direction.cross(rows[0]);
+        count = 2;
     }
-    else
-    {
-        const Vector3d u = c.direction.unitOrthogonal();
-        P.resize(2, 3);
-        P.row(0) = u.transpose();
-        P.row(1) = c.direction.cross(u).transpose();
-    }
-    return P;
-}
+
+    std::array<Vector3d, 2> rows;
+    std::size_t count = 1;
+};
 
 using PoseRow = Eigen::Matrix<double, 6, 1>;
+using PoseBlock = Eigen::Matrix<double, 6, 6>;
 
 /** Derivative of n^T y by (p, theta) of the pose that takes x to y: dy = dp - R [x]^ dtheta. */
 PoseRow poseDerivative(const Vector3d& n, const Vector3d& x, const Pose& pose)
@@ -49,42 +51,62 @@ PoseRow poseDerivative(const Vector3d& n, const Vector3d& x, const Pose& pose)
 struct LidarFactor::Noise
 {
     double variance;  //!< [m^2]
-    double widening;  //!< of the kernel's argument, at least 1
+    double widened;   //!< [m^2] the variance by which the kernel judges, at least as large
     const RobustKernel& kernel;
 
-    double rho(double r2) const { return widening * kernel.rho(r2 / (widening * variance)); }
-    double weight(double r2) const { return kernel.weight(r2 / (widening * variance)); }
+    /** rho in units of the variance, and the weight. */
+    RobustKernel::Judgement judge(double r2) const
+    {
+        const RobustKernel::Judgement j = kernel.judge(r2 / widened);
+        return {j.rho * widened / variance, j.weight};
+    }
 };
 
 LidarFactor::Noise LidarFactor::noiseOf(std::size_t i, double balance) const
 {
     const double sigma = correspondences_[i].sigma;
     const double variance = balance * balance * (noise_.sigma * noise_.sigma + sigma * sigma);
-    return {variance, surprise_ * (1 + predicted_variance_[i] / variance), noise_.kernel};
+    return {variance, surprise_ * (variance + predicted_variance_[i]), noise_.kernel};
 }
 
-/** Normal equations of the points between two nodes of the path, in the poses at both: 6 x 6 blocks
- * and 6 rows each. */
+/** Normal equations of the points between two nodes of the path. The derivative J of a residual r
+ * by the pose where it was seen is shared between the poses at both nodes, (1 - share) to share.
+ * All that comes of it follows from sums of w share^k (J, r)(J, r)^T for k = 0, 1, 2; these are
+ * symmetric, and kept row by row up to their diagonals. */
 struct LidarFactor::Interval
 {
-    using Block = Eigen::Matrix<double, 6, 6>;
-    using Row = PoseRow;
-    Block H_begin = Block::Zero(), H_both = Block::Zero(), H_end = Block::Zero();
-    Row g_begin = Row::Zero(), g_end = Row::Zero();
+    static constexpr int kSide = 7;
+    using Packed = Eigen::Array<double, kSide*(kSide + 1) / 2, 1>;
+
+    std::array<Packed, 3> moments{Packed::Zero(), Packed::Zero(), Packed::Zero()};
     double cost = 0;
 
-    /** A row of a residual r with weight w at a share of the interval: the derivative J by the pose
-     * there is shared between both nodes. */
-    void add(const Row& J, double r, double w, double share)
+    void add(const PoseRow& J, double r, double w, double share)
     {
-        const Row wJ = w * J;
-        const Block wJJ = wJ * J.transpose();
-        H_begin += (1 - share) * (1 - share) * wJJ;
-        H_both += share * (1 - share) * wJJ;
-        H_end += share * share * wJJ;
-        g_begin += (1 - share) * r * wJ;
-        g_end += share * r * wJ;
+        Eigen::Matrix<double, kSide, 1> row;
+        row << J, r;
+        Packed products;
+        for (int i = 0, at = 0; i < kSide; i++)
+            for (int j = 0; j <= i; j++) products[at++] = row[i] * row[j];
+        moments[0] += w * products;
+        moments[1] += w * share * products;
+        moments[2] += w * share * share * products;
     }
+};
+
+/** Such a sum, unpacked. */
+struct LidarFactor::Moments
+{
+    explicit Moments(const Interval::Packed& packed)
+    {
+        int at = 0;
+        for (int i = 0; i < 6; i++)
+            for (int j = 0; j <= i; j++) H(i, j) = H(j, i) = packed[at++];
+        g = packed.segment<6>(at);
+    }
+
+    PoseBlock H;
+    PoseRow g;
 };
 
 LidarFactor::LidarFactor(
@@ -108,11 +130,11 @@ void LidarFactor::setCorrespondences(
             {
                 if (correspondences[i].surface == Surface::None) continue;
                 const Vector3d x = features_.points[i].position.cast<double>();
-                const auto P = projection(correspondences[i]);
-                for (int k = 0; k < P.rows(); k++)
+                const Projection P(correspondences[i]);
+                for (std::size_t k = 0; k < P.count; k++)
                 {
-                    const PoseRow J = poseDerivative(P.row(k), x, at.poses[i]);
-                    predicted_variance_[i] += J.dot(predicted * J) / static_cast<double>(P.rows());
+                    const PoseRow J = poseDerivative(P.rows[k], x, at.poses[i]);
+                    predicted_variance_[i] += J.dot(predicted * J) / static_cast<double>(P.count);
                 }
             }
         });
@@ -127,7 +149,7 @@ void LidarFactor::measureSurprise(const SweepPath& path, double balance)
     forResiduals(
         path, balance,
         [&](double r2, const Noise& noise, int rows)
-        { e2.push_back(r2 / (noise.widening * noise.variance * rows)); });
+        { e2.push_back(r2 / (noise.widened * rows)); });
     if (e2.empty()) return;
     const auto middle = e2.begin() + static_cast<std::ptrdiff_t>(e2.size() / 2);
     std::nth_element(e2.begin(), middle, e2.end());
@@ -170,19 +192,20 @@ LidarFactor::Interval LidarFactor::linearizeInterval(
         const Correspondence& c = correspondences_[i];
         if (c.surface == Surface::None) continue;
         const Vector3d x = features_.points[i].position.cast<double>();
-        const auto P = projection(c);
+        const Projection P(c);
         const Vector3d d = at.points[i] - c.point;
-        double r2 = 0;
-        for (int k = 0; k < P.rows(); k++) r2 += square(P.row(k).dot(d));
+        std::array<double, 2> r{};
+        for (std::size_t k = 0; k < P.count; k++) r[k] = P.rows[k].dot(d);
 
         const Noise noise = noiseOf(i, balance);
-        const double w = noise.weight(r2) / noise.variance;
-        out.cost += 0.5 * noise.rho(r2);
+        const RobustKernel::Judgement judged = noise.judge(square(r[0]) + square(r[1]));
+        const double w = judged.weight / noise.variance;
+        out.cost += 0.5 * judged.rho;
 
         const double share =
             static_cast<double>(timeOf(i) - begin) / static_cast<double>(kNodeSpacing);
-        for (int k = 0; k < P.rows(); k++)
-            out.add(poseDerivative(P.row(k), x, at.poses[i]), P.row(k).dot(d), w, share);
+        for (std::size_t k = 0; k < P.count; k++)
+            out.add(poseDerivative(P.rows[k], x, at.poses[i]), r[k], w, share);
     }
     return out;
 }
@@ -218,14 +241,16 @@ double LidarFactor::linearize(
     for (std::size_t i = 0; i < count; i++)
     {
         const auto row = static_cast<Eigen::Index>(6 * i);
-        const Interval& in = intervals[i];
+        const Moments all(intervals[i].moments[0]), once(intervals[i].moments[1]),
+            twice(intervals[i].moments[2]);
+        const PoseBlock both = once.H - twice.H;
         HJ.middleRows<6>(row) +=
-            in.H_begin * J.middleRows<6>(row) + in.H_both * J.middleRows<6>(row + 6);
+            (all.H - once.H - both) * J.middleRows<6>(row) + both * J.middleRows<6>(row + 6);
         HJ.middleRows<6>(row + 6) +=
-            in.H_both * J.middleRows<6>(row) + in.H_end * J.middleRows<6>(row + 6);
-        g.segment<6>(row) += in.g_begin;
-        g.segment<6>(row + 6) += in.g_end;
-        cost += in.cost;
+            both * J.middleRows<6>(row) + twice.H * J.middleRows<6>(row + 6);
+        g.segment<6>(row) += all.g - once.g;
+        g.segment<6>(row + 6) += once.g;
+        cost += intervals[i].cost;
     }
     const ProblemMatrix H = J.transpose() * HJ;
     hessian += 0.5 * (H + H.transpose());  // the products round both halves differently
@@ -253,7 +278,8 @@ double LidarFactor::cost(const SweepPath& path, double balance) const
 {
     double sum = 0;
     forResiduals(
-        path, balance, [&](double r2, const Noise& noise, int) { sum += 0.5 * noise.rho(r2); });
+        path, balance,
+        [&](double r2, const Noise& noise, int) { sum += 0.5 * noise.judge(r2).rho; });
     return sum;
 }
 
@@ -264,7 +290,7 @@ LidarFit LidarFactor::fit(const SweepPath& path, double balance) const
         path, balance,
         [&](double r2, const Noise& noise, int rows)
         {
-            const double w = noise.weight(r2);
+            const double w = noise.judge(r2).weight;
             f.count++;
             f.chi2 += w * r2 / noise.variance;
             f.weights += w * rows;

@@ -4,38 +4,20 @@
 
 namespace taut
 {
-double RobustKernel::rho(double e2) const
+RobustKernel::Judgement RobustKernel::judgeOther(double e2, double c2) const
 {
-    const double c2 = scale * scale;
     switch (kind)
     {
         case Kernel::Huber:
-            return e2 <= c2 ? e2 : 2 * scale * std::sqrt(e2) - c2;
+            if (e2 > c2) return {2 * scale * std::sqrt(e2) - c2, scale / std::sqrt(e2)};
+            break;
         case Kernel::Cauchy:
-            return c2 * std::log1p(e2 / c2);
-        case Kernel::GemanMcClure:
-            return e2 / (1 + e2 / c2);
+            return {c2 * std::log1p(e2 / c2), 1 / (1 + e2 / c2)};
+        case Kernel::GemanMcClure:  // see judge()
         case Kernel::None:
             break;
     }
-    return e2;
-}
-
-double RobustKernel::weight(double e2) const
-{
-    const double c2 = scale * scale;
-    switch (kind)
-    {
-        case Kernel::Huber:
-            return e2 <= c2 ? 1 : scale / std::sqrt(e2);
-        case Kernel::Cauchy:
-            return 1 / (1 + e2 / c2);
-        case Kernel::GemanMcClure:
-            return 1 / ((1 + e2 / c2) * (1 + e2 / c2));
-        case Kernel::None:
-            break;
-    }
-    return 1;
+    return {e2, 1};
 }
 
 void RobustKernel::declare(ConfigSection& section)

@@ -18,10 +18,28 @@ struct RobustKernel
     Kernel kind = Kernel::GemanMcClure;
     double scale = 3.0;  //!< whitened residual from which the influence falls
 
-    double rho(double e2) const;
-    /** Derivative of rho by e2: the weight of iteratively re-weighted least squares. */
-    double weight(double e2) const;
+    /** The kernel, and its derivative by e2: the weight of iteratively re-weighted least squares.
+     */
+    struct Judgement
+    {
+        double rho, weight;
+    };
+    Judgement judge(double e2) const
+    {
+        const double c2 = scale * scale;
+        if (kind == Kernel::GemanMcClure)
+        {
+            const double left = c2 / (c2 + e2);
+            return {e2 * left, left * left};
+        }
+        return judgeOther(e2, c2);
+    }
+    double rho(double e2) const { return judge(e2).rho; }
+    double weight(double e2) const { return judge(e2).weight; }
 
     void declare(ConfigSection& section);
+
+ private:
+    Judgement judgeOther(double e2, double c2) const;
 };
 }  // namespace taut
