@@ -10,8 +10,8 @@ namespace taut
 {
 namespace
 {
-constexpr std::size_t kChunk = 3;  // intervals between nodes
-constexpr std::size_t kPointChunk = 512;
+// Waking a thread takes as long as some thousand points do.
+constexpr std::size_t kPointChunk = 2048;
 constexpr Duration kNodeSpacing = 5'000'000;  // [ns] between exact derivatives of the path
 constexpr int kPathSize = 2 * NavState::kSize;
 
@@ -38,12 +38,10 @@ struct Projection
 using PoseRow = Eigen::Matrix<double, 6, 1>;
 using PoseBlock = Eigen::Matrix<double, 6, 6>;
 
-/** Derivative of n^T y by (p, theta) of the pose that takes x to y: dy = dp - R [x]^ dtheta. */
-PoseRow poseDerivative(const Vector3d& n, const Vector3d& x, const Pose& pose)
+/** Derivative of n^T y by the rotation of the pose that takes x to y: dy = dp - R [x]^ dtheta. */
+Vector3d turnDerivative(const Vector3d& n, const Vector3d& x, const Pose& pose)
 {
-    PoseRow J;
-    J << n, x.cross(pose.R.transpose() * n);
-    return J;
+    return x.cross(pose.R.transpose() * n);
 }
 }  // namespace
 
@@ -71,42 +69,46 @@ LidarFactor::Noise LidarFactor::noiseOf(std::size_t i, double balance) const
 
 /** Normal equations of the points between two nodes of the path. The derivative J of a residual r
  * by the pose where it was seen is shared between the poses at both nodes, (1 - share) to share.
- * All that comes of it follows from sums of w share^k (J, r)(J, r)^T for k = 0, 1, 2; these are
- * symmetric, and kept row by row up to their diagonals. */
+ * All that comes of it follows from sums of w share^k (J, r)(J, r)^T for k = 0, 1, 2. */
 struct LidarFactor::Interval
 {
-    static constexpr int kSide = 7;
-    using Packed = Eigen::Array<double, kSide*(kSide + 1) / 2, 1>;
-
-    std::array<Packed, 3> moments{Packed::Zero(), Packed::Zero(), Packed::Zero()};
+    using Row = Eigen::Matrix<double, 8, 1>;     // J, r and a zero: whole pairs
+    using Moment = Eigen::Matrix<double, 8, 7>;  // symmetric: what is above the pairs of its
+                                                 // diagonal is left out
+    std::array<Moment, 3> moments{Moment::Zero(), Moment::Zero(), Moment::Zero()};
     double cost = 0;
 
-    void add(const PoseRow& J, double r, double w, double share)
+    /** A residual, ready to be added. */
+    struct Weighted
     {
-        Eigen::Matrix<double, kSide, 1> row;
-        row << J, r;
-        Packed products;
-        for (int i = 0, at = 0; i < kSide; i++)
-            for (int j = 0; j <= i; j++) products[at++] = row[i] * row[j];
-        moments[0] += w * products;
-        moments[1] += w * share * products;
-        moments[2] += w * share * share * products;
-    }
-};
-
-/** Such a sum, unpacked. */
-struct LidarFactor::Moments
-{
-    explicit Moments(const Interval::Packed& packed)
+        Row row;
+        double weight = 0, share = 0;
+    };
+    void add(const Weighted& in)
     {
-        int at = 0;
-        for (int i = 0; i < 6; i++)
-            for (int j = 0; j <= i; j++) H(i, j) = H(j, i) = packed[at++];
-        g = packed.segment<6>(at);
+        addProduct(in.weight * in.row, in.row, moments[0]);
+        addProduct(in.weight * in.share * in.row, in.row, moments[1]);
+        addProduct(in.weight * in.share * in.share * in.row, in.row, moments[2]);
     }
 
-    PoseBlock H;
-    PoseRow g;
+    template <int column = 0>
+    static void addProduct(const Row& weighted, const Row& row, Moment& sum)
+    {
+        constexpr int below = 8 - column / 2 * 2;
+        sum.col(column).template tail<below>() += weighted[column] * row.template tail<below>();
+        if constexpr (column < 6) addProduct<column + 1>(weighted, row, sum);
+    }
+
+    PoseBlock hessian(int k) const
+    {
+        return moments[static_cast<std::size_t>(k)]
+            .topLeftCorner<6, 6>()
+            .selfadjointView<Eigen::Lower>();
+    }
+    PoseRow gradient(int k) const
+    {
+        return moments[static_cast<std::size_t>(k)].block<1, 6>(6, 0).transpose();
+    }
 };
 
 LidarFactor::LidarFactor(
@@ -133,7 +135,8 @@ void LidarFactor::setCorrespondences(
                 const Projection P(correspondences[i]);
                 for (std::size_t k = 0; k < P.count; k++)
                 {
-                    const PoseRow J = poseDerivative(P.rows[k], x, at.poses[i]);
+                    PoseRow J;
+                    J << P.rows[k], turnDerivative(P.rows[k], x, at.poses[i]);
                     predicted_variance_[i] += J.dot(predicted * J) / static_cast<double>(P.count);
                 }
             }
@@ -182,12 +185,21 @@ const LidarFactor::Placed& LidarFactor::placed(const SweepPath& path) const
 LidarFactor::Interval LidarFactor::linearizeInterval(
     const Placed& at, double balance, Time begin) const
 {
+    const auto firstAt = [&](Time time)
+    {
+        const auto first = std::lower_bound(
+            features_.points.begin(), features_.points.end(), time,
+            [&](const Feature& f, Time t) { return features_.stamp + f.offset < t; });
+        return static_cast<std::size_t>(first - features_.points.begin());
+    };
+    const std::size_t first = firstAt(begin), last = firstAt(begin + kNodeSpacing);
+
+    // A weight takes some divisions, one after the other. Were each residual added at once, a
+    // processor could not look far enough ahead to begin with the next.
     Interval out;
-    const auto first = std::lower_bound(
-        features_.points.begin(), features_.points.end(), begin,
-        [&](const Feature& f, Time t) { return features_.stamp + f.offset < t; });
-    for (auto i = static_cast<std::size_t>(first - features_.points.begin());
-         i < features_.points.size() && timeOf(i) < begin + kNodeSpacing; i++)
+    std::vector<Interval::Weighted> residuals;
+    residuals.reserve(last - first);
+    for (std::size_t i = first; i < last; i++)
     {
         const Correspondence& c = correspondences_[i];
         if (c.surface == Surface::None) continue;
@@ -199,14 +211,20 @@ LidarFactor::Interval LidarFactor::linearizeInterval(
 
         const Noise noise = noiseOf(i, balance);
         const RobustKernel::Judgement judged = noise.judge(square(r[0]) + square(r[1]));
-        const double w = judged.weight / noise.variance;
         out.cost += 0.5 * judged.rho;
 
+        const double weight = judged.weight / noise.variance;
         const double share =
             static_cast<double>(timeOf(i) - begin) / static_cast<double>(kNodeSpacing);
         for (std::size_t k = 0; k < P.count; k++)
-            out.add(poseDerivative(P.rows[k], x, at.poses[i]), r[k], w, share);
+        {
+            Interval::Weighted& residual = residuals.emplace_back();
+            residual.row << P.rows[k], turnDerivative(P.rows[k], x, at.poses[i]), r[k], 0;
+            residual.weight = weight;
+            residual.share = share;
+        }
     }
+    for (const Interval::Weighted& residual : residuals) out.add(residual);
     return out;
 }
 
@@ -219,9 +237,11 @@ double LidarFactor::linearize(
         static_cast<std::size_t>((timeOf(features_.points.size() - 1) - begin) / kNodeSpacing + 1);
     const Placed& at = placed(path);
     std::vector<Interval> intervals(count);
+    const std::size_t nodes_a_chunk =
+        (count + 1) / Executor::chunks(features_.points.size(), kPointChunk) + 1;
     Eigen::MatrixXd J(6 * (count + 1), kPathSize);  // derivative of the pose at each node
     executor_.forChunks(
-        count + 1, kChunk,
+        count + 1, nodes_a_chunk,
         [&](std::size_t, std::size_t first, std::size_t last)
         {
             std::size_t hint = 0;
@@ -241,16 +261,14 @@ double LidarFactor::linearize(
     for (std::size_t i = 0; i < count; i++)
     {
         const auto row = static_cast<Eigen::Index>(6 * i);
-        const Moments all(intervals[i].moments[0]), once(intervals[i].moments[1]),
-            twice(intervals[i].moments[2]);
-        const PoseBlock both = once.H - twice.H;
-        HJ.middleRows<6>(row) +=
-            (all.H - once.H - both) * J.middleRows<6>(row) + both * J.middleRows<6>(row + 6);
-        HJ.middleRows<6>(row + 6) +=
-            both * J.middleRows<6>(row) + twice.H * J.middleRows<6>(row + 6);
-        g.segment<6>(row) += all.g - once.g;
-        g.segment<6>(row + 6) += once.g;
-        cost += intervals[i].cost;
+        const Interval& in = intervals[i];
+        const PoseBlock end = in.hessian(2), both = in.hessian(1) - end;
+        const PoseBlock start = in.hessian(0) - in.hessian(1) - both;
+        HJ.middleRows<6>(row) += start * J.middleRows<6>(row) + both * J.middleRows<6>(row + 6);
+        HJ.middleRows<6>(row + 6) += both * J.middleRows<6>(row) + end * J.middleRows<6>(row + 6);
+        g.segment<6>(row) += in.gradient(0) - in.gradient(1);
+        g.segment<6>(row + 6) += in.gradient(1);
+        cost += in.cost;
     }
     const ProblemMatrix H = J.transpose() * HJ;
     hessian += 0.5 * (H + H.transpose());  // the products round both halves differently

@@ -11,13 +11,14 @@ namespace taut
 namespace
 {
 constexpr std::uint8_t kMaxPatience = 15;  // insertions
-constexpr double kGrowth = 1.2;            // of a window's points, that it is computed anew
-constexpr double kDoubt = 3;               // deviations of the thickness of a smaller window
-constexpr double kThin = 0.1;              // quantile of the planes that tells the noise
-constexpr std::uint32_t kYoung = 30;       // insertions: a young map is as thick as it is wrong
-constexpr double kSameView = 1e-3;         // squared, between iterations
-constexpr double kGrazing = 0.05;          // cosine to the normal
-constexpr double kMargin = 256;            // [leaves] more than half a window
+constexpr std::size_t kWindowChunk = 64;
+constexpr double kGrowth = 1.2;       // of a window's points, that it is computed anew
+constexpr double kDoubt = 3;          // deviations of the thickness of a smaller window
+constexpr double kThin = 0.1;         // quantile of the planes that tells the noise
+constexpr std::uint32_t kYoung = 30;  // insertions: a young map is as thick as it is wrong
+constexpr double kSameView = 1e-3;    // squared, between iterations
+constexpr double kGrazing = 0.05;     // cosine to the normal
+constexpr double kMargin = 256;       // [leaves] more than half a window
 }  // namespace
 
 std::uint32_t OctreeMap::Windows::add()
@@ -247,8 +248,9 @@ void OctreeMap::refreshStale(int l, Executor& executor) const
         window.checked = insertions_;
         stale.push_back(search.window);
     }
+    // Waking a thread takes as long as some tens of windows do.
     executor.forChunks(
-        stale.size(), 32,
+        stale.size(), std::max<std::size_t>(kWindowChunk, (stale.size() + 3) / 4),
         [&](std::size_t, std::size_t begin, std::size_t end)
         {
             for (std::size_t i = begin; i < end; i++) locate(windows[stale[i]], l);

@@ -71,7 +71,6 @@ class LidarFactor
 
  private:
     struct Interval;
-    struct Moments;
     struct Noise;
     /** The features where a path takes them. */
     struct Placed
