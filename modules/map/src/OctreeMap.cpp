@@ -172,6 +172,7 @@ void OctreeMap::slide(const Vector3d& center_world)
         const Vector3d d = Vector3d(c.x(), c.y(), c.z()) + origin_ - center_world;
         return d.cwiseAbs().maxCoeff() > reach;
     };
+    const std::size_t blocks = blocks_.size();
     for (auto it = blocks_.begin(); it != blocks_.end();)
     {
         const octomap::OcTreeKey key = unpack(*it);
@@ -185,17 +186,24 @@ void OctreeMap::slide(const Vector3d& center_world)
             ++it;
         }
     }
+    if (blocks_.size() < blocks)
+        forgetWindows([&](std::uint64_t corner) { return outside(unpack(corner), kTreeDepth); });
+    if ((center_world - origin_).cwiseAbs().maxCoeff() > kRecenterKeys * config.leaf_size)
+        recenter(center_world);
+}
+
+template <class Outside>
+void OctreeMap::forgetWindows(const Outside& outside)
+{
     for (Level& level : levels_)
         level.index.eraseIf(
             [&](std::uint64_t corner, std::uint32_t window)
             {
-                level.windows[window].places = {};  // some nodes may be gone
-                const bool leaves = outside(unpack(corner), kTreeDepth);
+                level.windows[window].places = {};  // some nodes are gone
+                const bool leaves = outside(corner);
                 if (leaves) level.windows.remove(window);
                 return leaves;
             });
-    if ((center_world - origin_).cwiseAbs().maxCoeff() > kRecenterKeys * config.leaf_size)
-        recenter(center_world);
 }
 
 void OctreeMap::recenter(const Vector3d& center_world)

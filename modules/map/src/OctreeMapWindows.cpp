@@ -246,6 +246,7 @@ void OctreeMap::refreshStale(int l, Executor& executor) const
         if (!isStale(window)) continue;
         window.age = window.checked == 0 ? 0 : insertions_ - window.checked;
         window.checked = insertions_;
+        window.prefetchPlaces();
         stale.push_back(search.window);
     }
     // Waking a thread takes as long as some tens of windows do.
@@ -253,6 +254,9 @@ void OctreeMap::refreshStale(int l, Executor& executor) const
         stale.size(), std::max<std::size_t>(kWindowChunk, (stale.size() + 3) / 4),
         [&](std::size_t, std::size_t begin, std::size_t end)
         {
+            for (std::size_t i = begin; i < end; i++)
+                for (const StatisticsTree::Place& place : windows[stale[i]].places)
+                    if (place.node != nullptr) place.node->prefetch();
             for (std::size_t i = begin; i < end; i++) locate(windows[stale[i]], l);
             for (std::size_t i = begin; i < end; i++) refresh(windows[stale[i]], l);
         });

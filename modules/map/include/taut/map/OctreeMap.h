@@ -82,6 +82,12 @@ class OctreeMap : public Map
         std::array<std::uint16_t, 3> corner{};
         double seen = 0;                              //!< points at the last comparison
         std::array<StatisticsTree::Place, 8> places;  //!< of its nodes
+
+        /** Has what the comparison needs at hand when it is needed soon. */
+        void prefetchPlaces() const
+        {
+            for (std::size_t i = 0; i < places.size(); i += 4) __builtin_prefetch(&places[i]);
+        }
     };
     /** Windows by number. They stay where they are: moving them to a larger array would touch as
      * much memory as all of them fill. */
@@ -128,6 +134,8 @@ class OctreeMap : public Map
     };
     static constexpr std::uint32_t kNoWindow = KeyTable::kNone;
 
+    template <class Outside>
+    void forgetWindows(const Outside& outside);
     void recenter(const Vector3d& center_world);
     Cell cellOf(const Vector3d& p) const;
     static std::uint64_t cornerOf(const Cell& cell, int level);
