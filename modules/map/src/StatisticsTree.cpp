@@ -166,13 +166,12 @@ void StatisticsTree::sort(Entries& entries)
 
 std::size_t StatisticsTree::split(const Branches& branches, unsigned depth, Branches& below)
 {
-    constexpr std::size_t kAhead = 8;  // so many branches wait for memory at a time
     std::size_t created = 0;
     below.clear();
     below.reserve(branches.size());
+    for (const Branch& b : branches) b.node->prefetchChildren();
     for (std::size_t i = 0; i < branches.size(); i++)
     {
-        if (i + kAhead < branches.size()) branches[i + kAhead].node->prefetchChildren();
         const Branch& b = branches[i];
         for (const Entry* e = b.begin; e != b.end;)
         {
