@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "taut/core/Voxel.h"
@@ -28,7 +29,8 @@ std::uint64_t lotOf(const LidarPoint& point)
 class Draw
 {
  public:
-    explicit Draw(std::size_t most_voxels) : table_(powerOfTwoAbove(2 * most_voxels), kEmpty)
+    explicit Draw(std::size_t most_voxels)
+        : bits_(bitsAbove(2 * most_voxels)), table_(std::size_t{1} << bits_, kEmpty)
     {
         drawn_.reserve(most_voxels);
     }
@@ -36,7 +38,7 @@ class Draw
     /** Of the points of a voxel the one of the smallest lot is kept. */
     void add(std::uint64_t voxel, std::uint64_t lot, std::uint32_t point)
     {
-        std::size_t at = VoxelHash()(voxel) & (table_.size() - 1);
+        std::size_t at = placeOf(voxel);
         while (table_[at] != kEmpty && drawn_[table_[at]].voxel != voxel)
             at = (at + 1) & (table_.size() - 1);
         if (table_[at] == kEmpty)
@@ -67,13 +69,19 @@ class Draw
     };
     static constexpr std::uint32_t kEmpty = 0xffffffff;
 
-    static std::size_t powerOfTwoAbove(std::size_t n)
+    static int bitsAbove(std::size_t n)
     {
-        std::size_t power = 1;
-        while (power <= n) power *= 2;
-        return power;
+        int bits = 1;
+        while (n >> bits != 0) bits++;
+        return bits;
+    }
+    /** The high bits of the product depend on all of the key. */
+    std::size_t placeOf(std::uint64_t voxel) const
+    {
+        return voxel * 0x9e3779b97f4a7c15u >> (64 - bits_);
     }
 
+    int bits_;                          // of a place in the table
     std::vector<std::uint32_t> table_;  // places in drawn_, by hash
     std::vector<Drawn> drawn_;
 };
@@ -91,12 +99,18 @@ PointIndices finitePoints(const Scan& scan)
 PointIndices onePerVoxel(const Scan& scan, const PointIndices& candidates, double voxel_size)
 {
     const float inverse = static_cast<float>(1 / voxel_size);
-    Draw draw(candidates.size());
+    // What is known of a point before it meets the others is computed ahead: a processor that
+    // guesses wrongly in the table throws away what it began beyond.
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> voxels_and_lots;
+    voxels_and_lots.reserve(candidates.size());
     for (const std::uint32_t i : candidates)
     {
         const LidarPoint& point = scan.points[i];
-        draw.add(voxelKey(point.position, inverse), lotOf(point), i);
+        voxels_and_lots.emplace_back(voxelKey(point.position, inverse), lotOf(point));
     }
+    Draw draw(candidates.size());
+    for (std::size_t i = 0; i < candidates.size(); i++)
+        draw.add(voxels_and_lots[i].first, voxels_and_lots[i].second, candidates[i]);
     return draw.points();
 }
 
