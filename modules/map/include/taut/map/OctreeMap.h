@@ -100,7 +100,7 @@ class OctreeMap : public Map
         void remove(std::uint32_t i) { free_.push_back(i); }
 
      private:
-        static constexpr std::uint32_t kBlock = 1024;
+        static constexpr std::uint32_t kBlock = 256;
         std::vector<std::unique_ptr<Window[]>> blocks_;
         std::uint32_t size_ = 0;
         std::vector<std::uint32_t> free_;
