@@ -68,6 +68,7 @@ TEST(PosesAfterAGap, CoverWhatAPersonOrAVehicleCanHaveDone)
 {
     NavState before;
     before.T_world_imu = {expSO3({0, 0, 2}) * expSO3({0.1, -0.05, 0}), {3, -2, 1}};
+    Random random(5);
     for (const Vector3d& v : {Vector3d(0, 0, 0), Vector3d(1.5, 0.3, 0), Vector3d(-8, 6, 0.5)})
         for (const double gap : {0.5, 1.0, 2.0})
         {
@@ -75,7 +76,6 @@ TEST(PosesAfterAGap, CoverWhatAPersonOrAVehicleCanHaveDone)
             const Vector3d up = before.T_world_imu.R.transpose() * kGravityWorld;
             const std::vector<Pose> poses = PoseSearch::posesAfter(gap, before, up);
             EXPECT_LT(nearest(poses, before.T_world_imu), 0.6) << "it may not have moved";
-            Random random(5);
             for (int i = 0; i < 20; i++)
             {
                 const Vector3d a = random.vector(0.6);
@@ -87,6 +87,14 @@ TEST(PosesAfterAGap, CoverWhatAPersonOrAVehicleCanHaveDone)
                 EXPECT_LT(nearest(poses, there), 0.6);
             }
         }
+}
+
+TEST(PosesAfterAGap, AreNotWithoutNumberAfterALongGap)
+{
+    NavState before;
+    before.v_world = {20, 10, 3};
+    for (const double gap : {10.0, 3600.0, 1e9})
+        EXPECT_LT(PoseSearch::posesAfter(gap, before, kGravityWorld).size(), 50'000u);
 }
 
 TEST(PosesAfterAGap, AreLevelledByTheSpecificForceToo)

@@ -321,8 +321,9 @@ double LidarFactor::explained(const SweepPath& path) const
     double sum = 0;
     forResiduals(
         path, 1,
-        [&](double r2, const Noise& noise, int)
-        { sum += noise.kernel.weight(r2 / noise.variance); });
+        [&](double r2, const Noise& noise, int) {
+            sum += RobustKernel{Kernel::GemanMcClure, 3}.weight(r2 / noise.variance);
+        });
     return sum;
 }
 }  // namespace taut

@@ -101,7 +101,7 @@ void OctreeMap::refresh(Window& window, int level) const
 
 void OctreeMap::schedule(Window& window, double count) const
 {
-    // Few new points change a surface little: it is kept until a tenth more have come, and not
+    // Few new points change a surface little: it is kept until a fifth more have come, and not
     // looked at before they are expected.
     const double arrived = count - window.seen;
     const double missing = std::max<double>(config.min_points, kGrowth * window.count) - count;
@@ -321,8 +321,11 @@ void OctreeMap::match(
     const std::vector<MapPoint>& queries, std::vector<Correspondence>& correspondences,
     Executor& executor) const
 {
+    correspondences.assign(queries.size(), {});
+    if (empty()) return;
     const std::size_t lookups = queries.size() * levels_.size();
-    if (lookups_insertion_ != insertions_ || lookups_.size() != lookups)
+    if (lookups_insertion_ != insertions_ || lookups_.size() != lookups ||
+        searches_.size() != queries.size())
     {
         lookups_.assign(lookups, {});
         searches_.assign(queries.size(), {});
@@ -339,7 +342,6 @@ void OctreeMap::match(
     }
     for (Search& search : searches_) search.active = false;
     learnRangeNoise();
-    correspondences.assign(queries.size(), {});
     for (std::size_t i = 0; i < queries.size(); i++)
     {
         const Search& s = searches_[i];

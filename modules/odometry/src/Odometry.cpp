@@ -15,11 +15,9 @@ namespace taut
 {
 namespace
 {
-// The share of the matches that are explained varies little while the pose is right: between 0.67
-// and 1.1 of its mean in simulated and real recordings. At a place that is not where the map has
-// it, half of them are false or more.
-constexpr double kDoubtfulFit = 0.6;  // to the usual share
-constexpr double kFitMemory = 0.1;    // weight of a scan in it
+// Weight of a scan in what is usual, and that of one that is doubtful.
+constexpr double kFitMemory = 0.1;
+constexpr double kDoubtMemory = 0.01;
 
 std::array<double, 3> eigenvaluesOf(const Matrix3d& information)
 {
@@ -28,6 +26,15 @@ std::array<double, 3> eigenvaluesOf(const Matrix3d& information)
     return {e[0], e[1], e[2]};
 }
 }  // namespace
+
+bool isDoubtful(const ScanResult& result)
+{
+    // While the pose is right the share varies between 0.67 and 1.1 of its mean, in simulated and
+    // real recordings. At a place that is not where the map has it, half of the matches are false
+    // or more.
+    constexpr double kDoubtful = 0.6;
+    return result.lidar_used && result.fit() < kDoubtful * result.usual_fit;
+}
 
 Odometry::Odometry(const OdometryConfig& config, Executor& executor, WarningSink warn)
     : config_(config), executor_(executor), warn_(std::move(warn)), noise_(config.imu_noise)
@@ -109,6 +116,7 @@ void Odometry::estimate(
     if (with_imu_ && hasLongGap(motion) && !config_.map->empty())
     {
         uncertain = registration.startAfterGap(usual_explained_);
+        rest_ = {};  // nothing says that it rests still
     }
     else
     {
@@ -137,25 +145,19 @@ void Odometry::estimate(
     judgeFit(result);
 }
 
-void Odometry::judgeFit(const ScanResult& result)
+void Odometry::judgeFit(ScanResult& result)
 {
-    if (!result.lidar_used) return;
-    const double fit = result.explained / result.correspondences;
+    if (!result.lidar_used || !std::isfinite(result.explained)) return;
+    result.usual_fit = usual_fit_;
     const double explained = result.explained / result.features;
     if (usual_fit_ == 0)
     {
-        usual_fit_ = fit;
+        usual_fit_ = result.fit();
         usual_explained_ = explained;
     }
-    if (fit < kDoubtfulFit * usual_fit_ && warn_)
-    {
-        std::ostringstream text;
-        text << "only " << std::lround(100 * fit) << " % of the matched points fit the map, where "
-             << std::lround(100 * usual_fit_) << " % did: the pose may be lost from here on";
-        warn_({previous_.state.t, "pose_doubtful", text.str()});
-    }
-    usual_fit_ += kFitMemory * (fit - usual_fit_);
-    usual_explained_ += kFitMemory * (explained - usual_explained_);
+    const double memory = isDoubtful(result) ? kDoubtMemory : kFitMemory;
+    usual_fit_ += memory * (result.fit() - usual_fit_);
+    usual_explained_ += memory * (explained - usual_explained_);
 }
 
 void Odometry::endRestIfLeft(const NavState::Matrix& lidar_information)

@@ -240,6 +240,13 @@ void Pipeline::process(const Scan& scan)
              format(
                  "only %.0f correspondences: the state follows the IMU alone",
                  result.correspondences)});
+    if (isDoubtful(result) && warn_)
+        warn_(
+            {scan.end, "pose_doubtful",
+             format("only %.0f %% of the matched points fit the map", 100 * result.fit()) +
+                 format(
+                     ", where %.0f %% did: the pose may be lost from here on",
+                     100 * result.usual_fit)});
     results_(scan, result);
 
     // Samples before the new state are history, but for the one to interpolate with.

@@ -19,6 +19,7 @@ constexpr double kNear = 0.2;      // [m] that a point is off its surface: half 
 // What a body may do without being measured.
 constexpr double kAcceleration = 2;  // [m/s^2]
 constexpr double kFurthest = 5;      // [m] from where its velocity takes it
+constexpr double kLongestWay = 40;   // [m] on which it is looked for
 constexpr double kRate = 1;          // [rad/s]
 constexpr double kMostTurned = 1.2;  // [rad]
 
@@ -54,9 +55,9 @@ std::vector<Pose> PoseSearch::posesAfter(
     const Pose& from = before.T_world_imu;
     const double reach = std::min(0.5 * kAcceleration * gap * gap, kFurthest);
     const double most_turned = std::min(kRate * gap, kMostTurned);
-    const double climb = before.v_world.z() * gap;
     const Vector3d level(before.v_world.x(), before.v_world.y(), 0);
-    const double length = level.norm() * gap;
+    const double length = std::min(level.norm() * gap, kLongestWay);
+    const double climb = std::clamp(before.v_world.z() * gap, -kFurthest, kFurthest);
     const Vector3d along = length > 1e-6 ? level.normalized() : Vector3d::UnitX();
     const Vector3d beside = Vector3d::UnitZ().cross(along);
     std::vector<Pose> poses;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "Stopwatch.h"
 #include "taut/odometry/PoseSearch.h"
@@ -125,8 +126,15 @@ LidarFactor::PoseCovariance Registration::startAfterGap(double usual_share)
     {
         ScanResult tried;
         problem_.startFrom(start);
-        iterate(covarianceOfGuess(), tried);
-        if (tried.explained <= kClearlyBetter * most) return;
+        try
+        {
+            iterate(covarianceOfGuess(), tried);
+        }
+        catch (const std::runtime_error&)
+        {
+            return;  // a problem that cannot be solved from there
+        }
+        if (!(tried.explained > kClearlyBetter * most)) return;
         most = tried.explained;
         best = start;
     };

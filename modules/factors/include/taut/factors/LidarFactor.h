@@ -65,8 +65,9 @@ class LidarFactor
     double cost(const SweepPath& path, double balance) const;
     LidarFit fit(const SweepPath& path, double balance) const;
 
-    /** How many features are explained by their surfaces: the sum of the robust weights of the
-     * residuals by their noise alone, neither balanced nor widened. */
+    /** How many features are explained by their surfaces: the sum of the weights of the residuals
+     * by Geman and McClure's kernel, whatever kernel is configured, and by their noise alone,
+     * neither balanced nor widened. */
     double explained(const SweepPath& path) const;
 
  private:

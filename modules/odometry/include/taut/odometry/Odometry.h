@@ -31,6 +31,9 @@ struct ScanResult
     std::size_t scan_points = 0;  //!< raw points used, in range and time
     int features = 0, correspondences = 0, iterations = 0;
     double explained = 0;  //!< of the correspondences, by their surfaces: the sum of robust weights
+    double usual_fit = 0;  //!< fit() of the scans before, 0 for the first
+    /** Share of the correspondences that their surfaces explain; 0 without any. */
+    double fit() const { return correspondences > 0 ? explained / correspondences : 0; }
     bool converged = true;
     bool lidar_used = false;  //!< false: too few correspondences; the IMU alone moved the state
     double cost = 0, balance = 1;
@@ -39,6 +42,9 @@ struct ScanResult
     std::array<double, 3> rotation_information{};  //!< the same of the rotation [1/rad^2]
     StageTimes times;
 };
+
+/** True if the matches fit the map so much worse than usual that the pose is probably lost. */
+bool isDoubtful(const ScanResult& result);
 
 /** The paper's Algorithm 1: one state a scan, every point undistorted anew in every iteration. */
 class Odometry
@@ -62,7 +68,7 @@ class Odometry
     void estimate(
         const Features& features, const PreintegratedImu& motion, SweepPath& path,
         ScanResult& result);
-    void judgeFit(const ScanResult& result);
+    void judgeFit(ScanResult& result);
     std::vector<Eigen::Vector3f> undistorted(
         const Scan& raw, Time begin, const SweepPath& path) const;
     void endRestIfLeft(const NavState::Matrix& lidar_information);
