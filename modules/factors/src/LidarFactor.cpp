@@ -73,7 +73,7 @@ LidarFactor::Noise LidarFactor::noiseOf(std::size_t i, double balance) const
 struct LidarFactor::Interval
 {
     using Row = Eigen::Matrix<double, 8, 1>;     // J, r and a zero: whole pairs
-    using Moment = Eigen::Matrix<double, 8, 7>;  // symmetric: what is above the pairs of its
+    using Moment = Eigen::Matrix<double, 8, 6>;  // symmetric: what is above the pairs of its
                                                  // diagonal is left out
     std::array<Moment, 3> moments{Moment::Zero(), Moment::Zero(), Moment::Zero()};
     double cost = 0;
@@ -96,7 +96,7 @@ struct LidarFactor::Interval
     {
         constexpr int below = 8 - column / 2 * 2;
         sum.col(column).template tail<below>() += weighted[column] * row.template tail<below>();
-        if constexpr (column < 6) addProduct<column + 1>(weighted, row, sum);
+        if constexpr (column < 5) addProduct<column + 1>(weighted, row, sum);
     }
 
     PoseBlock hessian(int k) const
