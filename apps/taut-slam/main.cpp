@@ -163,8 +163,11 @@ class Run
         Executor executor(options_.threads);
         Pipeline pipeline(
             method_.odometry, executor, warnings_.sink(),
-            [&](const Scan&, const ScanResult& result)
+            [&](const Event& event)
             {
+                const auto* estimated = std::get_if<Estimated>(&event);
+                if (estimated == nullptr) return;
+                const ScanResult& result = estimated->result;
                 metrics_.add(result);
                 files.add(result);
                 map.add(result.estimate.state, result.points);
@@ -195,7 +198,7 @@ class Run
         summary_.with_imu = pipeline.withImu();
         if (pipeline.initialization())
             summary_.rest_seconds = pipeline.initialization()->rest_duration;
-        summary_.map_cells = method_.odometry.map->size();
+        summary_.map_cells = pipeline.mapSize();
         summary_.wall_seconds =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return failure;

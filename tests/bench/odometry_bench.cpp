@@ -137,12 +137,12 @@ void wholeScan(benchmark::State& state)
         if (k == recording().scans.size())
         {
             state.PauseTiming();
-            odometry.start(atRest(), true);
-            odometry.process(recording().scans[0], recording().imu);
+            odometry.start(atRest());
+            odometry.process(recording().scans[0], &recording().imu);
             k = 1;
             state.ResumeTiming();
         }
-        const ScanResult r = odometry.process(recording().scans[k++], recording().imu);
+        const ScanResult r = odometry.process(recording().scans[k++], &recording().imu);
         total.match += r.times.match;
         total.solve += r.times.solve;
         total.extract += r.times.extract;

@@ -49,9 +49,18 @@ struct Outcome
 {
     WarningLog log;
     std::vector<ScanResult> results;
+    /** What is final of each scan. */
+    struct Final
+    {
+        NavState state;
+        std::vector<Vector3d> points;
+    };
+    std::vector<Final> refined;
+    std::vector<Lost> lost;
+    std::vector<Recovered> recovered;
     bool with_imu = false;
     std::optional<Initialization> initialization;
-    std::size_t map_size = 0;
+    std::size_t map_size = 0, most_waiting = 0;
 
     std::size_t warnings() const { return log.counts().size(); }
 
@@ -72,11 +81,12 @@ struct Outcome
 /** Feeds both streams in the order of time, as a player would. */
 Outcome run(
     const Streams& streams, const std::string& estimation = "{}", int threads = 1,
-    bool keep_undistorted = false)
+    bool keep_undistorted = false, const std::string& on_motion = "start")
 {
     registerAll();
     ConfigSection root(mrpt::containers::yaml::FromText(
-        "initialization: {rest_duration: 1.2, min_rest: 0.5}\n"
+        "initialization: {rest_duration: 1.2, min_rest: 0.5, on_motion: " + on_motion +
+        "}\n"
         "lidar: {max_range: 30}\n"
         "estimation: " +
         estimation + "\n"));
@@ -87,19 +97,30 @@ Outcome run(
     Outcome out;
     Pipeline pipeline(
         config, executor, out.log.sink(),
-        [&](const Scan&, const ScanResult& result) { out.results.push_back(result); });
+        [&](const Event& event)
+        {
+            if (const auto* estimated = std::get_if<Estimated>(&event))
+                out.results.push_back(estimated->result);
+            else if (const auto* refined = std::get_if<Refined>(&event))
+                out.refined.push_back({refined->state, refined->points()});
+            else if (const auto* lost = std::get_if<Lost>(&event))
+                out.lost.push_back(*lost);
+            else if (const auto* recovered = std::get_if<Recovered>(&event))
+                out.recovered.push_back(*recovered);
+        });
     auto sample = streams.imu.begin();
     for (const Scan& scan : streams.scans)
     {
         for (; sample != streams.imu.end() && sample->t <= scan.end; ++sample)
             pipeline.add(*sample);
         pipeline.add(scan);
+        out.most_waiting = std::max(out.most_waiting, pipeline.waiting());
     }
     for (; sample != streams.imu.end(); ++sample) pipeline.add(*sample);
     pipeline.finish();
     out.with_imu = pipeline.withImu();
     out.initialization = pipeline.initialization();
-    out.map_size = config.map->size();
+    out.map_size = pipeline.mapSize();
     return out;
 }
 
@@ -246,6 +267,172 @@ TEST(Pipeline, AGapInTheImuIsReportedAndSurvived)
     EXPECT_EQ(done.log.kept().front().t, gap.imu[699].t);
     EXPECT_EQ(done.results.size(), gap.scans.size());
     EXPECT_LT(done.error(gap.recording), 0.03);
+}
+
+namespace
+{
+/** A motion by hand at a third of the pace, which constant velocity can follow. */
+Streams slowHand()
+{
+    Recording slow;
+    slow.swing = 0.3;
+    return {slow, slow.imu(), slow.scans()};
+}
+
+void eraseImu(Streams& streams, double from, double to)
+{
+    const Time begin = streams.recording.start + fromSeconds(from);
+    const Time end = streams.recording.start + fromSeconds(to);
+    streams.imu.erase(
+        std::remove_if(
+            streams.imu.begin(), streams.imu.end(),
+            [&](const ImuSample& s) { return s.t > begin && s.t < end; }),
+        streams.imu.end());
+}
+}  // namespace
+
+TEST(Pipeline, AnImuThatDiesIsReportedAndTheLidarGoesOn)
+{
+    Streams dying = slowHand();
+    eraseImu(dying, 2.5, 100);
+    const Outcome done = run(dying);
+    EXPECT_EQ(done.results.size(), dying.scans.size());
+    EXPECT_EQ(done.log.count("imu_silent"), 1u);
+    EXPECT_EQ(done.log.kept().front().t, dying.imu.back().t);
+    EXPECT_LT(done.error(dying.recording), 0.006);
+    ASSERT_EQ(done.lost.size(), 1u);
+    EXPECT_EQ(done.lost[0].cause, "imu_silent");
+    EXPECT_NEAR(toSeconds(done.lost[0].t - dying.imu.back().t), 0.15, 0.06);
+    EXPECT_TRUE(done.recovered.empty());
+    // Held while a sample may still come: a second of scans, not the rest of the recording.
+    EXPECT_LE(done.most_waiting, 13u);
+    expectEqual(done, run(dying, "{}", 2));
+}
+
+TEST(Pipeline, AnImuThatComesBackIsUsedAgain)
+{
+    Streams gap = slowHand();
+    eraseImu(gap, 2.2, 3.9);
+    const Outcome done = run(gap);
+    EXPECT_EQ(done.results.size(), gap.scans.size());
+    EXPECT_EQ(done.log.count("imu_silent"), 1u);
+    EXPECT_EQ(done.log.count("imu_back"), 1u);
+    EXPECT_LT(done.error(gap.recording), 0.006);
+    EXPECT_TRUE(done.results.back().with_imu);
+    EXPECT_FALSE(done.results[33].with_imu);
+    ASSERT_EQ(done.recovered.size(), 1u);
+    EXPECT_NEAR(toSeconds(done.recovered[0].t - gap.recording.start), 4.05, 0.1);
+}
+
+TEST(Pipeline, AnImuThatDiesWhileARestIsWaitedForIsNotWaitedFor)
+{
+    Streams dying = slowHand();
+    eraseImu(dying, 0.8, 100);
+    const Outcome done = run(dying);
+    EXPECT_EQ(done.log.count("imu_silent"), 1u);
+    EXPECT_GE(done.results.size(), dying.scans.size() - 1);
+    EXPECT_LT(done.error(dying.recording), 0.01);
+}
+
+TEST(Pipeline, ALidarThatEndsIsReported)
+{
+    Streams ends = hand();
+    ends.scans.resize(30);
+    const Outcome done = run(ends);
+    EXPECT_EQ(done.log.count("lidar_ended"), 1u);
+    EXPECT_EQ(done.log.kept().back().t, ends.scans.back().end);
+}
+
+TEST(Pipeline, HoldsABoundedPastWhileItWaitsForARest)
+{
+    Recording moving;
+    moving.rest = 0;
+    moving.duration = 6;
+    const Streams never{moving, moving.imu(), moving.scans()};
+    const Outcome done = run(never, "{}", 1, false, "wait");
+    EXPECT_EQ(done.log.count("no_rest"), 1u);
+    EXPECT_TRUE(done.results.empty());
+    EXPECT_LE(done.most_waiting, 15u);
+}
+
+TEST(Pipeline, TellsEachStateAgainWhenItIsFinal)
+{
+    const Outcome done = run(hand());
+    ASSERT_EQ(done.refined.size(), done.results.size());
+    for (std::size_t k = 0; k < done.results.size(); k++)
+    {
+        const NavState& expected = k + 1 < done.results.size() ? done.results[k + 1].previous
+                                                               : done.results[k].estimate.state;
+        EXPECT_EQ(done.refined[k].state.T_world_imu.p, expected.T_world_imu.p);
+        EXPECT_EQ(done.refined[k].points.size(), done.results[k].points.size());
+    }
+}
+
+TEST(Pipeline, TheFinalPointsAreNearerToWhereTheyWere)
+{
+    const Streams& brisk = hand();
+    const Outcome done = run(brisk);
+    double filtered = 0, refined = 0, n = 0;
+    for (std::size_t k = 20; k < done.results.size(); k++)
+    {
+        const Scan& raw = done.results[k].sweep.scan;
+        for (std::size_t i = 0; i < raw.points.size(); i++)
+        {
+            const Pose pose = brisk.recording.truth(raw.timeOf(raw.points[i])).T_world_imu;
+            const Vector3d truth = pose * Vector3d(raw.points[i].position.cast<double>());
+            filtered += (done.results[k].points[i] - truth).squaredNorm();
+            refined += (done.refined[k].points[i] - truth).squaredNorm();
+            n++;
+        }
+    }
+    ASSERT_GT(n, 50'000);
+    EXPECT_LT(refined, filtered);
+    RecordProperty("refined_mm", std::to_string(1e3 * std::sqrt(refined / n)));
+    RecordProperty("filtered_mm", std::to_string(1e3 * std::sqrt(filtered / n)));
+}
+
+TEST(Pipeline, ASweepUndistortedAgainAlongItsOwnPathIsTheSame)
+{
+    const Outcome done = run(hand());
+    const ScanResult& r = done.results[30];
+    const std::vector<Vector3d> again = r.sweep.undistorted(r.sweep.begin, r.sweep.end);
+    ASSERT_EQ(again.size(), r.points.size());
+    for (std::size_t i = 0; i < again.size(); i++) ASSERT_LT((again[i] - r.points[i]).norm(), 1e-9);
+}
+
+TEST(Pipeline, TwoFromOneConfigurationShareNothing)
+{
+    registerAll();
+    ConfigSection root;
+    const OdometryConfig config = OdometryConfig::read(root);
+    Executor executor(1);
+    std::vector<Vector3d> path[3];
+    const auto into = [&](std::vector<Vector3d>& positions) -> EventSink
+    {
+        return [&positions](const Event& event)
+        {
+            if (const auto* e = std::get_if<Estimated>(&event))
+                positions.push_back(e->result.estimate.state.T_world_imu.p);
+        };
+    };
+    const auto feed = [&](const Streams& streams, std::vector<Pipeline*> pipelines)
+    {
+        auto sample = streams.imu.begin();
+        for (std::size_t k = 0; k < 25; k++)
+        {
+            for (; sample->t <= streams.scans[k].end; ++sample)
+                for (Pipeline* p : pipelines) p->add(*sample);
+            for (Pipeline* p : pipelines) p->add(streams.scans[k]);
+        }
+        for (Pipeline* p : pipelines) p->finish();
+    };
+    Pipeline alone(config, executor, {}, into(path[0]));
+    feed(hand(), {&alone});
+    Pipeline one(config, executor, {}, into(path[1])), other(config, executor, {}, into(path[2]));
+    feed(hand(), {&one, &other});
+    ASSERT_GT(path[0].size(), 20u);
+    EXPECT_EQ(path[0], path[1]);
+    EXPECT_EQ(path[0], path[2]);
 }
 
 TEST(Pipeline, WithoutAnImuTheMotionIsTakenAsConstantVelocity)

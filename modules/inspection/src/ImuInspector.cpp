@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "format.h"
+#include "taut/core/format.h"
 
 namespace taut
 {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "LogFindings.h"
-#include "format.h"
+#include "taut/core/format.h"
 #include "taut/inspection/TurningWindow.h"
 #include "taut/rawlog/PrefetchedRawlog.h"
 

@@ -1,8 +1,7 @@
 #include "taut/inspection/InspectionReport.h"
 
 #include <nlohmann/json.hpp>
-
-#include "format.h"
+#include "taut/core/format.h"
 
 namespace taut
 {

@@ -1,8 +1,7 @@
 #include "taut/inspection/LidarInspector.h"
 
 #include <algorithm>
-
-#include "format.h"
+#include "taut/core/format.h"
 
 namespace taut
 {

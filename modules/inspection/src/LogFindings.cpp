@@ -1,6 +1,5 @@
 #include "LogFindings.h"
-
-#include "format.h"
+#include "taut/core/format.h"
 
 namespace taut
 {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "format.h"
+#include "taut/core/format.h"
 #include "taut/inspection/ImuInspector.h"
 #include "taut/inspection/ScanTurns.h"
 

@@ -21,7 +21,7 @@ OdometryConfig methodFor(const GyroHint* hint)
     {
         const auto path = std::make_shared<GyroPathPreintegrator>();
         path->use(*hint->gyro, hint->clock_offset);
-        method.preintegrator = path;
+        method.preintegrator = Prototype<Preintegrator>(path);
     }
     else
     {
@@ -45,8 +45,11 @@ LidarTurns matchScans(
 {
     const OdometryConfig method = methodFor(hint);
     std::vector<StampedRotation> path;
-    const auto collect = [&](const Scan& scan, const ScanResult& result)
+    const auto collect = [&](const Event& event)
     {
+        const auto* estimated = std::get_if<Estimated>(&event);
+        if (estimated == nullptr) return;
+        const auto& [scan, result] = *estimated;
         // The scan after it knows the end of a sweep better than the sweep itself.
         const Matrix3d& R = scan.T_imu_lidar.R;
         if (!path.empty()) path.back().R_world_lidar = result.previous.T_world_imu.R * R;

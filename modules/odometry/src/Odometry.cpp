@@ -37,13 +37,20 @@ bool isDoubtful(const ScanResult& result)
 }
 
 Odometry::Odometry(const OdometryConfig& config, Executor& executor, WarningSink warn)
-    : config_(config), executor_(executor), warn_(std::move(warn)), noise_(config.imu_noise)
+    : config_(config),
+      preintegrator_(config.preintegrator.create()),
+      fallback_preintegrator_(config.fallback_preintegrator.create()),
+      extractor_(config.extractor.create()),
+      solver_(config.solver.create()),
+      map_(config.map.create()),
+      executor_(executor),
+      warn_(std::move(warn)),
+      noise_(config.imu_noise)
 {
 }
 
-void Odometry::start(const Initialization& initialization, bool with_imu)
+void Odometry::start(const Initialization& initialization)
 {
-    with_imu_ = with_imu;
     started_ = true;
     previous_.state = initialization.estimate.state;
     previous_.information =
@@ -57,28 +64,28 @@ void Odometry::start(const Initialization& initialization, bool with_imu)
         noise_.accel = std::max(noise_.accel, initialization.measured_noise.accel);
     }
     usual_explained_ = usual_fit_ = 0;
-    config_.map->clear();
+    map_->clear();
 }
 
-PreintegratedImu Odometry::integrate(Time end, const ImuSamples& imu) const
+PreintegratedImu Odometry::integrate(Time end, const ImuSamples* imu) const
 {
     PreintegrationRequest request;
     request.begin = previous_.state.t;
     request.end = end;
-    request.samples = &imu;
+    request.samples = imu;
     request.previous = previous_.state;
     request.previous_rate = previous_rate_;
     request.noise = noise_;
-    return (with_imu_ ? config_.preintegrator : config_.fallback_preintegrator)->integrate(request);
+    return (imu != nullptr ? preintegrator_ : fallback_preintegrator_)->integrate(request);
 }
 
-ScanResult Odometry::process(const Scan& raw, const ImuSamples& imu)
+ScanResult Odometry::process(const Scan& raw, const ImuSamples* imu)
 {
     ScanResult result;
     Stopwatch watch;
     const Time begin = previous_.state.t;
     const Scan scan = transformScan(raw, config_.range, begin);
-    result.with_imu = with_imu_;
+    result.with_imu = imu != nullptr;
     result.scan_points = scan.points.size();
     watch.stage(result.times.transform);
 
@@ -89,11 +96,14 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples& imu)
     Undistortion mode = config_.estimation.undistortion;
     if (scan.already_undistorted) mode = Undistortion::None;
     // What was not measured in a gap before the sweep is not to be closed in the sweep.
-    if (isIterated(mode) && with_imu_ && hasLongGap(motion)) mode = Undistortion::IteratedImu;
+    if (isIterated(mode) && result.with_imu && hasLongGap(motion)) mode = Undistortion::IteratedImu;
     SweepPath path(mode, motion, previous_.state, prior);
+    result.sweep.mode = mode;
+    result.sweep.prior_begin = previous_.state;
+    result.sweep.prior_end = prior;
     watch.stage(result.times.preintegrate);
 
-    const Features features = config_.extractor->extract(scan, warn_);
+    const Features features = extractor_->extract(scan, warn_);
     result.features = static_cast<int>(features.points.size());
     watch.stage(result.times.extract);
 
@@ -102,6 +112,9 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples& imu)
     result.times.solve -= result.times.match;
 
     insert(scan, path, result);
+    result.sweep.motion = motion;
+    result.sweep.begin = result.previous;
+    result.sweep.end = previous_.state;
     watch.stage(result.times.insert);
     if (config_.keep_undistorted) result.undistorted = undistorted(raw, begin, path);
     return result;
@@ -110,10 +123,11 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples& imu)
 void Odometry::estimate(
     const Features& features, const PreintegratedImu& motion, SweepPath& path, ScanResult& result)
 {
-    Registration registration(config_, executor_, previous_, motion, features, path);
+    Registration registration(
+        config_, *map_, *solver_, executor_, previous_, motion, features, path);
     ScanProblem& problem = registration.problem();
     LidarFactor::PoseCovariance uncertain = problem.predictedPoseCovariance();
-    if (with_imu_ && hasLongGap(motion) && !config_.map->empty())
+    if (result.with_imu && hasLongGap(motion) && !map_->empty())
     {
         uncertain = registration.startAfterGap(usual_explained_);
         rest_ = {};  // nothing says that it rests still
@@ -196,7 +210,7 @@ std::vector<Eigen::Vector3f> Odometry::undistorted(
 
 void Odometry::insert(const Scan& scan, const SweepPath& path, ScanResult& result)
 {
-    config_.map->slide(previous_.state.T_world_imu.p);
+    map_->slide(previous_.state.T_world_imu.p);
     const std::size_t n = scan.points.size();
     if (n == 0) return;
     const auto most = static_cast<std::size_t>(config_.insert.max_points);
@@ -208,6 +222,9 @@ void Odometry::insert(const Scan& scan, const SweepPath& path, ScanResult& resul
     const SampledPath poses(path, scan.timeOf(*first), scan.timeOf(*last));
     inserted_.resize(kept);
     result.points.resize(kept);
+    Scan& raw = result.sweep.scan;
+    raw = {scan.stamp, scan.end, {}, scan.rings, scan.already_undistorted, scan.sensor_label, {}};
+    raw.points.resize(kept);
     executor_.forChunks(
         kept, 1024,
         [&](std::size_t, std::size_t chunk_begin, std::size_t chunk_end)
@@ -219,8 +236,9 @@ void Odometry::insert(const Scan& scan, const SweepPath& path, ScanResult& resul
                 const Vector3d position = pose * Vector3d(p.position.cast<double>());
                 inserted_[i] = {position, FeatureKind::Any, (pose.p - position).normalized()};
                 result.points[i] = position;
+                raw.points[i] = p;
             }
         });
-    config_.map->insert(inserted_, executor_);
+    map_->insert(inserted_, executor_);
 }
 }  // namespace taut

@@ -46,16 +46,19 @@ OdometryConfig OdometryConfig::read(ConfigSection& root)
     imu.key("gyro_bias_walk", c.imu_noise.gyro_bias_walk, kPositive, "rad/s^2/sqrt(Hz)");
     imu.key("accel_bias_walk", c.imu_noise.accel_bias_walk, kPositive, "m/s^3/sqrt(Hz)");
     imu.key("noise_from_rest", c.imu_noise_from_rest, "raise the white noise to that seen at rest");
-    imu.key("wait", c.imu_wait, kPositive, "s of scans without IMU: then there is none");
+    imu.key(
+        "wait", c.imu_wait, kPositive,
+        "s of scans without an IMU sample: then constant velocity takes over");
 
-    c.preintegrator = createConfigured<Preintegrator>(
-        root.section("preintegration"), "taut::MidpointPreintegrator");
-    c.fallback_preintegrator = createConfigured<Preintegrator>(
-        root.section("without_imu"), "taut::ConstantVelocityPreintegrator");
-    c.extractor =
-        createConfigured<FeatureExtractor>(root.section("features"), "taut::VoxelThinning");
-    c.solver = createConfigured<Solver>(root.section("solver"), "taut::GaussNewton");
-    c.map = createConfigured<Map>(root.section("map"), "taut::OctreeMap");
+    c.preintegrator = Prototype<Preintegrator>(createConfigured<Preintegrator>(
+        root.section("preintegration"), "taut::MidpointPreintegrator"));
+    c.fallback_preintegrator = Prototype<Preintegrator>(createConfigured<Preintegrator>(
+        root.section("without_imu"), "taut::ConstantVelocityPreintegrator"));
+    c.extractor = Prototype<FeatureExtractor>(
+        createConfigured<FeatureExtractor>(root.section("features"), "taut::VoxelThinning"));
+    c.solver =
+        Prototype<Solver>(createConfigured<Solver>(root.section("solver"), "taut::GaussNewton"));
+    c.map = Prototype<Map>(createConfigured<Map>(root.section("map"), "taut::OctreeMap"));
     return c;
 }
 }  // namespace taut

@@ -1,258 +1,215 @@
 #include "taut/odometry/Pipeline.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <limits>
-
 #include "StartInMotion.h"
+#include "Synchronizer.h"
+#include "gaps.h"
+#include "taut/core/format.h"
 
 namespace taut
 {
 namespace
 {
-std::string format(const char* text, double value)
+/** Nothing is known but that the world begins at this scan, level, with an unknown velocity. */
+Initialization startWithoutImu(const Scan& first)
 {
-    char buffer[256];
-    std::snprintf(buffer, sizeof buffer, text, value);
-    return buffer;
-}
-
-constexpr double kImuGap = 0.1;    // [s] worth a warning
-constexpr double kLidarGap = 0.5;  // [s]
-
-// Passes over the first scans of a start in motion, and what of their outcome is worth a warning.
-constexpr int kBootstrapPasses = 12;
-constexpr double kUnsettled = 20;      // changes that are negligible
-constexpr double kWrongGravity = 1.0;  // [m/s^2] off what it is on Earth
-constexpr double kWorse = 1.3;         // misfit of a pass to that of the one before
-constexpr double kNoBetter = 0.5;      // change by a pass to that by the one before
-
-// Where else to begin: a vehicle's speed along each horizontal axis of the body.
-constexpr double kOtherSpeed = 10;  // [m/s]
-const Vector3d kOtherStarts[] = {
-    Vector3d::UnitX(), -Vector3d::UnitX(), Vector3d::UnitY(), -Vector3d::UnitY()};
-}  // namespace
-
-Pipeline::Pipeline(
-    const OdometryConfig& config, Executor& executor, const WarningSink& warn, ResultSink results)
-    : config_(config),
-      warn_(warn),
-      results_(std::move(results)),
-      odometry_(config, executor, warn),
-      initializer_(config.initialization, warn)
-{
-    if (!config.preintegrator->needsImu()) beginWithoutImu();
-}
-
-void Pipeline::add(const ImuSample& sample)
-{
-    if (mode_ == Mode::WithoutImu)
-    {
-        if (config_.preintegrator->needsImu() && warn_)
-            warn_(
-                {sample.t, "late_imu",
-                 "IMU samples appear after the estimation has started without them: ignored"});
-        return;
-    }
-    mode_ = Mode::WithImu;
-    if (!imu_.empty() && toSeconds(sample.t - imu_.back().t) > kImuGap && warn_)
-        warn_(
-            {imu_.back().t, "imu_gap",
-             format("no IMU sample for %.3f s", toSeconds(sample.t - imu_.back().t))});
-    imu_.push_back(sample);
-    if (!initialization_ && initializer_.add(sample)) begin(*initializer_.result());
-    processReady(false);
-}
-
-void Pipeline::add(Scan scan)
-{
-    waiting_.push_back(std::move(scan));
-    if (mode_ == Mode::Undecided &&
-        toSeconds(waiting_.back().end - waiting_.front().end) >= config_.imu_wait)
-    {
-        if (warn_)
-            warn_(
-                {waiting_.front().end, "no_imu",
-                 format(
-                     "no IMU sample in the first %.1f s of scans: the motion between scans is "
-                     "taken as constant velocity instead",
-                     config_.imu_wait)});
-        beginWithoutImu();
-    }
-    processReady(false);
-}
-
-void Pipeline::finish()
-{
-    if (mode_ == Mode::Undecided && !waiting_.empty())
-    {
-        if (warn_)
-            warn_(
-                {waiting_.front().end, "no_imu",
-                 "the recording has no IMU sample: constant velocity instead"});
-        beginWithoutImu();
-    }
-    if (mode_ == Mode::WithImu && !initialization_ && initializer_.finish())
-        begin(*initializer_.result());
-    processReady(true);
-}
-
-void Pipeline::begin(const Initialization& initialization)
-{
-    initialization_ = initialization;
-    odometry_.start(initialization, true);
-}
-
-void Pipeline::beginWithoutImu()
-{
-    // Nothing is known but that the world starts here, level, with an unknown velocity.
-    mode_ = Mode::WithoutImu;
     Initialization start;
     start.at_rest = false;
     NavState::Vector sigma;
     sigma << Vector3d::Constant(1e-5), Vector3d::Constant(10.0), Vector3d::Constant(1e-5),
         Vector3d::Constant(1e-4), Vector3d::Constant(1e-4);
     start.estimate.covariance = sigma.cwiseAbs2().asDiagonal();
-    start.estimate.state.t = waiting_.empty() ? 0 : waiting_.front().stamp - 1;
-    initialization_ = start;
-    if (start.estimate.state.t != 0) odometry_.start(start, false);
+    start.estimate.state.t = first.stamp - 1;  // a point is used if it is later than the state
+    return start;
+}
+}  // namespace
+
+Pipeline::Pipeline(OdometryConfig config, Executor& executor, WarningSink warn, EventSink events)
+    : config_(std::move(config)),
+      warn_(std::move(warn)),
+      events_(std::move(events)),
+      streams_(std::make_unique<Synchronizer>(config_.imu_wait, warn_)),
+      initializer_(config_.initialization, warn_),
+      odometry_(config_, executor, warn_),
+      needs_imu_(config_.preintegrator->needsImu())
+{
+    if (!needs_imu_) streams_->runWithoutImu();
 }
 
-void Pipeline::processReady(bool all)
+Pipeline::~Pipeline() = default;
+
+bool Pipeline::withImu() const
 {
+    return streams_->imu() != Synchronizer::Imu::Absent;
+}
+
+std::size_t Pipeline::waiting() const
+{
+    return streams_->scans().size();
+}
+
+void Pipeline::add(const ImuSample& sample)
+{
+    if (!needs_imu_) return;
+    streams_->add(sample);
+    if (withImu() && !initialization_) initializer_.add(sample);
+    advance();
+}
+
+void Pipeline::add(Scan scan)
+{
+    streams_->add(std::move(scan));
+    advance();
+}
+
+void Pipeline::finish()
+{
+    streams_->end();
+    advance();
+    if (last_sweep_) events_(Refined{*last_sweep_, last_sweep_->end});
+    last_sweep_.reset();
+    events_(Ended{odometry_.started() ? odometry_.time() : 0});
+}
+
+void Pipeline::advance()
+{
+    findStart();
     if (!initialization_) return;
-    if (!odometry_.started() && !waiting_.empty())
+    if (!odometry_.started())
     {
-        initialization_->estimate.state.t = waiting_.front().stamp - 1;
-        odometry_.start(*initialization_, false);
+        const bool enough = streams_->ready() >= kStartingScans || streams_->ended();
+        if (!initialization_->at_rest && !enough) return;
+        start();
     }
-    if (!initialization_->at_rest && !bootstrapped_)
+    while (streams_->ready() > 0)
     {
-        if (readyScans() < kBootstrapScans && !all) return;
-        bootstrap();
-    }
-    for (std::size_t ready = all ? waiting_.size() : readyScans(); ready > 0; ready--)
-    {
-        process(waiting_.front());
-        waiting_.pop_front();
+        process(streams_->scans().front());
+        streams_->popScan();
     }
 }
 
-std::size_t Pipeline::readyScans() const
+void Pipeline::findStart()
 {
-    if (!withImu()) return waiting_.size();
-    std::size_t n = 0;
-    while (n < waiting_.size() && !imu_.empty() && imu_.back().t >= waiting_[n].end) n++;
-    return n;
+    if (initialization_) return;
+    if (!withImu())
+    {
+        if (!streams_->scans().empty())
+            initialization_ = startWithoutImu(streams_->scans().front());
+        return;
+    }
+    const bool no_more = streams_->ended() || streams_->imu() == Synchronizer::Imu::Silent;
+    if (no_more) initializer_.finish();
+    initialization_ = initializer_.result();
+    // While a rest is waited for, what lies before it is of no use.
+    if (initialization_ || !initializer_.earliestStart()) return;
+    streams_->forgetScansBefore(*initializer_.earliestStart());
+    streams_->forgetSamplesBefore(*initializer_.earliestStart());
 }
 
-std::vector<ScanResult> Pipeline::tryStart(const Initialization& start)
+void Pipeline::start()
 {
-    odometry_.start(start, withImu());
+    if (initialization_->at_rest)
+    {
+        odometry_.start(*initialization_);
+    }
+    else
+    {
+        const StartInMotion found = findStartInMotion(
+            *initialization_, [this](const Initialization& from) { return firstScansFrom(from); });
+        if (!found.settled)
+            warn(
+                found.start.estimate.state.t, "start_unsettled",
+                "the first scans do not agree on velocity and gravity at the start: the beginning "
+                "is less accurate");
+        odometry_.start(found.start);
+    }
+    events_(Started{*initialization_, withImu()});
+}
+
+const ImuSamples* Pipeline::samplesFor(const Scan& scan) const
+{
+    return streams_->tell(odometry_.time(), scan.end) ? &streams_->samples() : nullptr;
+}
+
+std::vector<ScanResult> Pipeline::firstScansFrom(const Initialization& from)
+{
+    odometry_.start(from);
     std::vector<ScanResult> results;
-    for (std::size_t i = 0; i < std::min(waiting_.size(), kBootstrapScans); i++)
-        if (waiting_[i].end > odometry_.time())
-            results.push_back(odometry_.process(waiting_[i], imu_));
+    std::size_t tried = 0;
+    for (const Scan& scan : streams_->scans())
+    {
+        if (tried++ == kStartingScans) break;
+        if (scan.end > odometry_.time())
+            results.push_back(odometry_.process(scan, samplesFor(scan)));
+    }
     return results;
-}
-
-TriedStart Pipeline::settle(const Initialization& initialization)
-{
-    // In motion, the first scan is undistorted with an unknown velocity and makes a wrong map, and
-    // the mean specific force is not gravity. The scans after it tell both: start again with what
-    // they tell, as well known as it still changes, until map and motion agree.
-    Initialization start = initialization, widened = start;
-    constexpr double kUnknown = std::numeric_limits<double>::infinity();
-    double last_misfit = kUnknown, last_change = kUnknown;
-    TriedStart best;
-    best.start = initialization;
-    bool sharpen = true;
-    for (int pass = 0; pass < kBootstrapPasses; pass++)
-    {
-        const std::vector<ScanResult> results = tryStart(start);
-        if (results.size() < 2) break;
-        const Revision revision = revisionOf(results);
-        const double misfit = misfitOf(results);
-        if (sharpen && misfit > kWorse * last_misfit && revision.change() > kNoBetter * last_change)
-        {
-            // Known too well too early, false matches agree with each other.
-            sharpen = false;
-            start = widened;
-            continue;
-        }
-        last_misfit = misfit;
-        last_change = revision.change();
-        const double merit = misfit * std::max(1.0, revision.change());
-        if (merit < best.merit)
-            best = {
-                start, merit, revision.change(), revision.gravity_error, matchedShareOf(results)};
-        if (revision.change() <= 1) break;
-        widened.estimate.state = revised(start.estimate.state, revision);
-        start = widened;
-        if (sharpen) start.estimate.covariance = sharpened(widened.estimate.covariance, revision);
-    }
-    return best;
-}
-
-void Pipeline::bootstrap()
-{
-    bootstrapped_ = true;
-    TriedStart best = settle(*initialization_);
-    // False matches hold a start near the velocity that it began with: where few of the features
-    // match, or the passes do not come to rest, others may agree with more of what the scans see.
-    if (!best.convincing())
-    {
-        for (const Vector3d& direction : kOtherStarts)
-        {
-            Initialization other = *initialization_;
-            NavState& x = other.estimate.state;
-            x.v_world += x.T_world_imu.R * Vector3d(kOtherSpeed * direction);
-            const TriedStart tried = settle(other);
-            if (tried.merit < best.merit) best = tried;
-        }
-    }
-    if ((best.change > kUnsettled || best.gravity_error > kWrongGravity) && warn_)
-        warn_(
-            {best.start.estimate.state.t, "start_unsettled",
-             "the first scans do not agree on velocity and gravity at the start: the beginning is "
-             "less accurate"});
-    odometry_.start(best.start, withImu());
 }
 
 void Pipeline::process(const Scan& scan)
 {
     if (scan.end <= odometry_.time())
     {
-        if (warn_ && scan.end > initialization_->estimate.state.t)
-            warn_(
-                {scan.end, "scan_order",
-                 "a scan that does not end after the one before it is skipped"});
+        if (scan.end > initialization_->estimate.state.t)
+            warn(
+                scan.end, "scan_order",
+                "a scan that does not end after the one before it is skipped");
         return;
     }
     const double interval = toSeconds(scan.end - odometry_.time());
-    if (interval > kLidarGap && warn_)
-        warn_({odometry_.time(), "lidar_gap", format("no scan for %.2f s", interval)});
-    const ScanResult result = odometry_.process(scan, imu_);
-    if (!result.lidar_used && warn_ && result.iterations > 0)
-        warn_(
-            {scan.end, "few_correspondences",
-             format(
-                 "only %.0f correspondences: the state follows the IMU alone",
-                 result.correspondences)});
-    if (isDoubtful(result) && warn_)
-        warn_(
-            {scan.end, "pose_doubtful",
-             format("only %.0f %% of the matched points fit the map", 100 * result.fit()) +
-                 format(
-                     ", where %.0f %% did: the pose may be lost from here on",
-                     100 * result.usual_fit)});
-    results_(scan, result);
+    if (interval > kLidarGap)
+        warn(odometry_.time(), "lidar_gap", format("no scan for %.2f s", interval));
+    ScanResult result = odometry_.process(scan, samplesFor(scan));
+    judge(result);
+    refineLast(result);
+    events_(Estimated{scan, result});
+    last_sweep_ = std::move(result.sweep);
+    estimated_++;
+    streams_->forgetSamplesBefore(odometry_.time());
+}
 
-    // Samples before the new state are history, but for the one to interpolate with.
-    const auto keep = std::lower_bound(
-        imu_.begin(), imu_.end(), odometry_.time(),
-        [](const ImuSample& s, Time t) { return s.t < t; });
-    if (keep - imu_.begin() > 1) imu_.erase(imu_.begin(), keep - 1);
+void Pipeline::refineLast(const ScanResult& next)
+{
+    if (!last_sweep_) return;
+    // Without an IMU the second scan could move the first, where the map begins, only along a speed
+    // that is not known.
+    const bool moves = next.with_imu || estimated_ > 1;
+    events_(Refined{*last_sweep_, moves ? next.previous : last_sweep_->end});
+}
+
+void Pipeline::judge(const ScanResult& result)
+{
+    const Time t = result.estimate.state.t;
+    std::string cause;
+    if (isDoubtful(result))
+    {
+        cause = "pose_doubtful";
+        warn(
+            t, cause,
+            format(
+                "only %.0f %% of the matched points fit the map, where %.0f %% did: the pose may "
+                "be lost from here on",
+                100 * result.fit(), 100 * result.usual_fit));
+    }
+    else if (!result.lidar_used && result.iterations > 0)
+    {
+        cause = "few_correspondences";
+        warn(
+            t, cause,
+            format(
+                "only %d correspondences: the state follows the %s alone", result.correspondences,
+                result.with_imu ? "IMU" : "velocity"));
+    }
+    else if (!result.with_imu && withImu())
+    {
+        cause = "imu_silent";
+    }
+    if (cause == lost_) return;
+    if (!lost_.empty()) events_(Recovered{t, lost_});
+    if (!cause.empty()) events_(Lost{t, cause});
+    lost_ = cause;
+}
+
+void Pipeline::warn(Time t, const std::string& kind, const std::string& text) const
+{
+    if (warn_) warn_({t, kind, text});
 }
 }  // namespace taut

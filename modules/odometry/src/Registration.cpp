@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "Stopwatch.h"
+#include "gaps.h"
 #include "taut/odometry/PoseSearch.h"
 
 namespace taut
@@ -15,7 +16,6 @@ namespace
  * correspondences, since an estimate takes its place: the kernel closes step by step. */
 constexpr double kStillPredicted = 0.25;
 
-constexpr double kLongGap = 0.3;        // [s]
 constexpr double kClearlyBetter = 1.1;  // features explained, to those by what was tried before
 constexpr double kAsUsual = 0.8;        // the same to what is usual: less is searched for
 constexpr std::size_t kSearched = 8;    // poses of the search that are worth an iteration
@@ -41,7 +41,7 @@ Vector3d specificForceAfterGap(const PreintegratedImu& motion)
 {
     Vector3d sum = motion.knots[0].sample.accel;
     std::size_t n = 1;
-    for (; n < motion.knots.size() && stepAfter(motion, n - 1) < kLongGap; n++)
+    for (; n < motion.knots.size() && stepAfter(motion, n - 1) < kLongImuGap; n++)
         sum += motion.knots[n].sample.accel;
     return sum / static_cast<double>(n) - motion.bias_accel;
 }
@@ -50,14 +50,17 @@ Vector3d specificForceAfterGap(const PreintegratedImu& motion)
 bool hasLongGap(const PreintegratedImu& motion)
 {
     for (std::size_t i = 0; i + 1 < motion.knots.size(); i++)
-        if (stepAfter(motion, i) > kLongGap) return true;
+        if (stepAfter(motion, i) > kLongImuGap) return true;
     return false;
 }
 
 Registration::Registration(
-    const OdometryConfig& config, Executor& executor, const NavPrior& previous,
-    const PreintegratedImu& motion, const Features& features, SweepPath& path)
+    const OdometryConfig& config, const Map& map, const Solver& solver, Executor& executor,
+    const NavPrior& previous, const PreintegratedImu& motion, const Features& features,
+    SweepPath& path)
     : config_(config),
+      map_(map),
+      solver_(solver),
       executor_(executor),
       before_(previous.state),
       motion_(motion),
@@ -74,7 +77,7 @@ void Registration::iterate(LidarFactor::PoseCovariance unexplained, ScanResult& 
 {
     const EstimationConfig& config = config_.estimation;
     result.balance = config.inflation;
-    for (int i = 0; i < config.max_iterations && !config_.map->empty(); i++)
+    for (int i = 0; i < config.max_iterations && !map_.empty(); i++)
     {
         Stopwatch watch;
         const std::vector<Vector3d>& world = lidar_.undistort(path_);
@@ -82,7 +85,7 @@ void Registration::iterate(LidarFactor::PoseCovariance unexplained, ScanResult& 
             queries_[j] = {
                 world[j], features_.points[j].kind,
                 (problem_.current().T_world_imu.p - world[j]).normalized()};
-        config_.map->match(queries_, correspondences_, executor_);
+        map_.match(queries_, correspondences_, executor_);
         watch.stage(result.times.match);
 
         lidar_.setCorrespondences(correspondences_, path_, unexplained, result.balance);
@@ -95,7 +98,7 @@ void Registration::iterate(LidarFactor::PoseCovariance unexplained, ScanResult& 
         if (config.balance && i > 0) result.balance = balanceOf(result.correspondences);
         problem_.setBalance(result.balance);
 
-        const SolveReport report = config_.solver->solve(problem_);
+        const SolveReport report = solver_.solve(problem_);
         result.iterations = i + 1;
         result.cost = report.final_cost;
         result.converged = report.last_step < config.min_step;
@@ -173,7 +176,7 @@ std::vector<Pose> Registration::likelyPoses()
         const Vector3d p = T_imu_world * world[i];
         scan.push_back({p, features_.points[i].kind, -p.normalized()});
     }
-    return PoseSearch(scan, *config_.map, executor_)
+    return PoseSearch(scan, map_, executor_)
         .bestOf(
             PoseSearch::posesAfter(motion_.duration(), before_, specificForceAfterGap(motion_)),
             kSearched);

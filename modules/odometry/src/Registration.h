@@ -16,8 +16,9 @@ class Registration
  public:
     /** All references are kept. */
     Registration(
-        const OdometryConfig& config, Executor& executor, const NavPrior& previous,
-        const PreintegratedImu& motion, const Features& features, SweepPath& path);
+        const OdometryConfig& config, const Map& map, const Solver& solver, Executor& executor,
+        const NavPrior& previous, const PreintegratedImu& motion, const Features& features,
+        SweepPath& path);
 
     ScanProblem& problem() { return problem_; }
 
@@ -37,6 +38,8 @@ class Registration
     std::vector<Pose> likelyPoses();
 
     const OdometryConfig& config_;
+    const Map& map_;
+    const Solver& solver_;
     Executor& executor_;
     const NavState before_;
     const PreintegratedImu& motion_;

@@ -1,6 +1,7 @@
 #include "StartInMotion.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,18 @@ constexpr double kSettledTilt = 0.003;     // [rad]
 constexpr double kSharpestVelocity = 0.1;  // [m/s] a revised start is known no better
 constexpr double kSharpestTilt = 0.01;     // [rad]
 constexpr double kWellMatched = 0.5;       // share of the features
+
+// Passes over the first scans, and what of their outcome is worth a warning.
+constexpr int kPasses = 12;
+constexpr double kUnsettled = 20;      // changes that are negligible
+constexpr double kWrongGravity = 1.0;  // [m/s^2] off what it is on Earth
+constexpr double kWorse = 1.3;         // misfit of a pass to that of the one before
+constexpr double kNoBetter = 0.5;      // change by a pass to that by the one before
+
+// Where else to begin: a vehicle's speed along each horizontal axis of the body.
+constexpr double kOtherSpeed = 10;  // [m/s]
+const Vector3d kOtherStarts[] = {
+    Vector3d::UnitX(), -Vector3d::UnitX(), Vector3d::UnitY(), -Vector3d::UnitY()};
 
 /** What the body did when the first scan ended, in the world frame of the results. */
 struct StartOfMotion
@@ -54,18 +67,29 @@ StartOfMotion startOfMotion(const std::vector<ScanResult>& results)
     const Matrix3d solution = normal.ldlt().solve(right);
     return {solution.row(1).transpose(), solution.row(2).transpose()};
 }
-}  // namespace
 
-double Revision::change() const
+/** What the first scans say of the start that they were given. */
+struct Revision
 {
-    return std::max(velocity.norm() / kSettledVelocity, tilt() / kSettledTilt);
-}
+    Vector3d velocity = Vector3d::Zero();                       // [m/s] is missing
+    Eigen::Quaterniond level = Eigen::Quaterniond::Identity();  // turns gravity upright
+    double gravity_error = 0;                                   // [m/s^2] of its norm
 
+    double tilt() const { return Eigen::AngleAxisd(level).angle(); }  // [rad]
+
+    /** Its size in what is negligible: at most 1 when map and motion agree. */
+    double change() const
+    {
+        return std::max(velocity.norm() / kSettledVelocity, tilt() / kSettledTilt);
+    }
+};
+
+/** Compares the results of the first scans, at least two, with the start they were given. */
 Revision revisionOf(const std::vector<ScanResult>& results)
 {
     Revision revision;
     const Vector3d& assumed = results[0].estimate.state.v_world;
-    if (results.size() < kBootstrapScans)
+    if (results.size() < kStartingScans)
     {
         revision.velocity = results[1].previous.v_world - assumed;
         return revision;
@@ -79,6 +103,7 @@ Revision revisionOf(const std::vector<ScanResult>& results)
     return revision;
 }
 
+/** The start with that revision. */
 NavState revised(NavState x, const Revision& revision)
 {
     x.v_world = revision.level * Vector3d(x.v_world + revision.velocity);
@@ -86,6 +111,7 @@ NavState revised(NavState x, const Revision& revision)
     return x;
 }
 
+/** The covariance of a start that is known as well as it was revised. */
 NavState::Matrix sharpened(const NavState::Matrix& covariance, const Revision& revision)
 {
     NavState::Matrix information = covariance.inverse();
@@ -96,6 +122,8 @@ NavState::Matrix sharpened(const NavState::Matrix& covariance, const Revision& r
     return information.inverse();
 }
 
+/** How badly the scans fit the map that they make: by the cost of a match, and if matches are few.
+ */
 double misfitOf(const std::vector<ScanResult>& results)
 {
     double cost = 0, matches = 0;
@@ -108,6 +136,7 @@ double misfitOf(const std::vector<ScanResult>& results)
     return matches > 0 ? cost / square(matches) : std::numeric_limits<double>::infinity();
 }
 
+/** Share of the features that found a match, over the scans that had a map to match: 0...1. */
 double matchedShareOf(const std::vector<ScanResult>& results)
 {
     double matches = 0, features = 0;
@@ -119,8 +148,73 @@ double matchedShareOf(const std::vector<ScanResult>& results)
     return features > 0 ? matches / features : 0;
 }
 
-bool TriedStart::convincing() const
+/** A start after passes over the first scans, and how its best pass went. */
+struct TriedStart
 {
-    return change <= 1 && matched > kWellMatched;
+    Initialization start;
+    double cost = std::numeric_limits<double>::infinity();  // misfit times change; 0 is best
+    double change = 0;                                      // by that pass, in what is negligible
+    double gravity_error = 0;                               // [m/s^2] seen by that pass
+    double matched = 1;                                     // share of the features
+
+    /** Map and motion agree, and with most of what the scans see: not by chance. */
+    bool convincing() const { return change <= 1 && matched > kWellMatched; }
+};
+
+/** Passes over the first scans from one start, each with what the one before it told. */
+TriedStart settle(const Initialization& initialization, const FirstScans& first_scans)
+{
+    // The start of each pass is as well known as it still changes.
+    Initialization start = initialization, widened = start;
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    double last_misfit = kUnknown, last_change = kUnknown;
+    TriedStart best;
+    best.start = initialization;
+    bool sharpen = true;
+    for (int pass = 0; pass < kPasses; pass++)
+    {
+        const std::vector<ScanResult> results = first_scans(start);
+        if (results.size() < 2) break;
+        const Revision revision = revisionOf(results);
+        const double misfit = misfitOf(results);
+        if (sharpen && misfit > kWorse * last_misfit && revision.change() > kNoBetter * last_change)
+        {
+            // Known too well too early, false matches agree with each other.
+            sharpen = false;
+            start = widened;
+            continue;
+        }
+        last_misfit = misfit;
+        last_change = revision.change();
+        const double cost = misfit * std::max(1.0, revision.change());
+        if (cost < best.cost)
+            best = {
+                start, cost, revision.change(), revision.gravity_error, matchedShareOf(results)};
+        if (revision.change() <= 1) break;
+        widened.estimate.state = revised(start.estimate.state, revision);
+        start = widened;
+        if (sharpen) start.estimate.covariance = sharpened(widened.estimate.covariance, revision);
+    }
+    return best;
+}
+}  // namespace
+
+StartInMotion findStartInMotion(const Initialization& initialization, const FirstScans& first_scans)
+{
+    TriedStart best = settle(initialization, first_scans);
+    // False matches hold a start near the velocity that it began with: where few of the features
+    // match, or the passes do not settle, others may agree with more of what the scans see.
+    if (!best.convincing())
+    {
+        for (const Vector3d& direction : kOtherStarts)
+        {
+            Initialization other = initialization;
+            NavState& x = other.estimate.state;
+            x.v_world += x.T_world_imu.R * Vector3d(kOtherSpeed * direction);
+            const TriedStart tried = settle(other, first_scans);
+            if (tried.cost < best.cost) best = tried;
+        }
+    }
+    return {best.start, best.change <= kUnsettled && best.gravity_error <= kWrongGravity};
 }
 }  // namespace taut

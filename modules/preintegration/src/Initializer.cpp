@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "taut/core/format.h"
 
 namespace taut
 {
@@ -10,13 +11,6 @@ namespace
 {
 constexpr double kGaugeSigma = 1e-5;         // position [m] and yaw [rad] are 0 by definition
 constexpr double kRestVelocitySigma = 1e-3;  // [m/s]
-
-std::string format(const char* text, double a, double b)
-{
-    char buffer[256];
-    std::snprintf(buffer, sizeof buffer, text, a, b);
-    return buffer;
-}
 
 /** Joint covariance of (theta, ba) from a prior on both and the mean specific force
  * mean = R^T g + ba, known to sigma_mean. */
@@ -104,6 +98,15 @@ bool Initializer::add(const ImuSample& sample)
     return result_.has_value();
 }
 
+std::optional<Time> Initializer::earliestStart() const
+{
+    // Whoever may start in motion starts with the first sample.
+    if (first_.count > 0 && config_.on_motion == OnMotion::Start) return first_.begin;
+    if (rest_.count > 0) return rest_.begin;
+    if (current_.count > 0) return current_.begin;
+    return std::nullopt;
+}
+
 bool Initializer::finish()
 {
     if (result_) return true;
@@ -113,9 +116,11 @@ bool Initializer::finish()
     const double rested = rest_.count > 0 ? toSeconds(rest_.end - rest_.begin) : 0;
     if (rested >= config_.min_rest)
         result_ = fromRest();
-    else
+    else if (config_.on_motion == OnMotion::Start)
         startInMotion(first_.begin, rested);
-    return true;
+    else
+        reportWaiting(current_.count > 0 ? current_.begin : first_.begin, rested);
+    return result_.has_value();
 }
 
 void Initializer::closeWindow()
@@ -166,16 +171,21 @@ void Initializer::onMotion(Time t)
     {
         startInMotion(t, rested);
     }
-    else if (!waiting_reported_)
+    else
     {
-        waiting_reported_ = true;
-        if (warn_)
-            warn_(
-                {t, "no_rest",
-                 format(
-                     "the body moves (rested for %.1f s): waiting for a rest of %.1f s", rested,
-                     config_.min_rest)});
+        reportWaiting(t, rested);
     }
+}
+
+void Initializer::reportWaiting(Time t, double rested)
+{
+    if (!waiting_reported_ && warn_)
+        warn_(
+            {t, "no_rest",
+             format(
+                 "the body moves (rested for %.1f s): waiting for a rest of %.1f s", rested,
+                 config_.min_rest)});
+    waiting_reported_ = true;
 }
 
 void Initializer::startInMotion(Time t, double rested)

@@ -1,8 +1,8 @@
 #include "taut/trajectory/Report.h"
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "taut/core/format.h"
 #include "taut/trajectory/TrajectoryFile.h"
 
 namespace taut
@@ -10,14 +10,6 @@ namespace taut
 namespace
 {
 using Json = nlohmann::ordered_json;
-
-template <class... Values>
-std::string format(const char* pattern, Values... values)
-{
-    char buffer[256];
-    std::snprintf(buffer, sizeof buffer, pattern, values...);
-    return buffer;
-}
 
 std::string row(const std::string& name, const char* unit, const Statistics& s)
 {

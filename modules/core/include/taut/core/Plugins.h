@@ -37,4 +37,27 @@ std::shared_ptr<Interface> createConfigured(ConfigSection& section, std::string 
     plugin->configure(section);
     return plugin;
 }
+
+/** A configured object of a plug point as it stands in a configuration: a value that nobody
+ * changes. Who works with it makes an object of their own, so that two users of one configuration
+ * share nothing. */
+template <class Interface>
+class Prototype
+{
+ public:
+    Prototype() = default;
+    Prototype(std::shared_ptr<const Interface> object) : object_(std::move(object)) {}
+
+    const Interface* operator->() const { return object_.get(); }
+
+    /** A copy of its own, as configured. */
+    std::unique_ptr<Interface> create() const
+    {
+        std::unique_ptr<mrpt::rtti::CObject> copy(object_->clone());
+        return std::unique_ptr<Interface>(&dynamic_cast<Interface&>(*copy.release()));
+    }
+
+ private:
+    std::shared_ptr<const Interface> object_;
+};
 }  // namespace taut

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 
 #include "taut/core/Warning.h"
+#include "taut/factors/Sweep.h"
 #include "taut/odometry/OdometryConfig.h"
 #include "taut/odometry/Rest.h"
 
@@ -23,6 +25,7 @@ struct ScanResult
     NavState previous;     //!< x_{k-1} as this scan moved it; x_{k-1} unchanged where it is held
     bool with_imu = true;  //!< false: predicted by constant velocity
     std::vector<Vector3d> points;  //!< undistorted points as inserted, world frame [m]
+    Sweep sweep;                   //!< the same points raw, with their path
     /** Where OdometryConfig::keep_undistorted asks for it: each point of the raw scan in the body
      * frame at its end, along the final path [m]; NaN where it was not usable. */
     std::vector<Eigen::Vector3f> undistorted;
@@ -46,25 +49,31 @@ struct ScanResult
 /** True if the matches fit the map so much worse than usual that the pose is probably lost. */
 bool isDoubtful(const ScanResult& result);
 
-/** The paper's Algorithm 1: one state a scan, every point undistorted anew in every iteration. */
+/** The paper's Algorithm 1: one state a scan, every point undistorted anew in every iteration.
+ * Owns its map and everything behind the plug points. Not thread-safe; any number of them can work
+ * at once, each with an Executor of its own. */
 class Odometry
 {
  public:
     Odometry(const OdometryConfig& config, Executor& executor, WarningSink warn);
 
-    /** Starts at a state. Without an IMU, preintegration falls back to constant velocity. */
-    void start(const Initialization& initialization, bool with_imu);
+    /** Starts at a state, with an empty map. */
+    void start(const Initialization& initialization);
     bool started() const { return started_; }
 
     /** Time of the last state. */
     Time time() const { return previous_.state.t; }
 
-    /** Estimates the state at the scan's end. `imu` should reach from time() to there. Throws
-     * std::invalid_argument if the scan does not end after time(). */
-    ScanResult process(const Scan& scan, const ImuSamples& imu);
+    /** Estimates the state at the scan's end. `imu` should reach from time() to there; null where
+     * there is no IMU: the velocity is then taken as constant. Throws std::invalid_argument if the
+     * scan does not end after time(). */
+    ScanResult process(const Scan& scan, const ImuSamples* imu);
+
+    /** Cells or points in the local map. */
+    std::size_t mapSize() const { return map_->size(); }
 
  private:
-    PreintegratedImu integrate(Time end, const ImuSamples& imu) const;
+    PreintegratedImu integrate(Time end, const ImuSamples* imu) const;
     void estimate(
         const Features& features, const PreintegratedImu& motion, SweepPath& path,
         ScanResult& result);
@@ -74,11 +83,15 @@ class Odometry
     void endRestIfLeft(const NavState::Matrix& lidar_information);
     void insert(const Scan& scan, const SweepPath& path, ScanResult& result);
 
-    const OdometryConfig& config_;
+    OdometryConfig config_;
+    std::unique_ptr<Preintegrator> preintegrator_, fallback_preintegrator_;
+    std::unique_ptr<FeatureExtractor> extractor_;
+    std::unique_ptr<Solver> solver_;
+    std::unique_ptr<Map> map_;
     Executor& executor_;
     WarningSink warn_;
     ImuNoise noise_;
-    bool with_imu_ = true, started_ = false;
+    bool started_ = false;
     NavPrior previous_;
     Rest rest_;
     Vector3d previous_rate_ = Vector3d::Zero();

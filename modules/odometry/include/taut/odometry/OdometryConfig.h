@@ -1,11 +1,10 @@
 #pragma once
 
-#include <memory>
-
 #include "taut/core/Config.h"
 #include "taut/core/FeatureExtractor.h"
 #include "taut/core/Imu.h"
 #include "taut/core/Map.h"
+#include "taut/core/Plugins.h"
 #include "taut/core/Preintegrator.h"
 #include "taut/core/Solver.h"
 #include "taut/factors/LidarFactor.h"
@@ -52,7 +51,8 @@ struct MapInsertConfig
     int max_points = 20000;  //!< of one scan: evenly thinned above
 };
 
-/** All choices of a method, with the objects behind the plug points: what a method file says. */
+/** All choices of a method, with prototypes of the plug points: what a method file says. A value:
+ * copies share nothing that changes. */
 struct OdometryConfig
 {
     EstimationConfig estimation;
@@ -63,13 +63,13 @@ struct OdometryConfig
     RangeConfig range;
     MapInsertConfig insert;
     bool keep_undistorted = false;  //!< fill ScanResult::undistorted; for programs, not a key
-    double imu_wait = 1.0;  //!< [s] of scans without any IMU sample after which there is no IMU
+    double imu_wait = 1.0;  //!< [s] of scans without an IMU sample after which nobody waits for one
 
-    std::shared_ptr<Preintegrator> preintegrator;
-    std::shared_ptr<Preintegrator> fallback_preintegrator;  //!< for recordings without an IMU
-    std::shared_ptr<FeatureExtractor> extractor;
-    std::shared_ptr<Solver> solver;
-    std::shared_ptr<Map> map;
+    Prototype<Preintegrator> preintegrator;
+    Prototype<Preintegrator> fallback_preintegrator;  //!< for times without an IMU
+    Prototype<FeatureExtractor> extractor;
+    Prototype<Solver> solver;
+    Prototype<Map> map;
 
     /** Reads all sections and creates the plug points. Throws ConfigError. */
     static OdometryConfig read(ConfigSection& root);

@@ -1,25 +1,26 @@
 #pragma once
 
-#include <deque>
-#include <functional>
 #include <memory>
+#include <optional>
 
-#include "taut/odometry/Odometry.h"
+#include "taut/odometry/Events.h"
 
 namespace taut
 {
-struct TriedStart;
+class Synchronizer;
 
-/** Brings the streams together: waits for the initialisation, holds each scan until the IMU reaches
- * over its end, and hands both to the odometry. */
+/** From two streams to a trajectory: synchronises them, finds a start, and hands each scan with the
+ * samples that reach over it to the odometry. What comes of it is told as events.
+ *
+ * Samples and scans may come in any interleaving, each stream in the order of time. Not
+ * thread-safe; the sinks are called from within add() and finish(). */
 class Pipeline
 {
  public:
-    using ResultSink = std::function<void(const Scan&, const ScanResult&)>;
-
-    Pipeline(
-        const OdometryConfig& config, Executor& executor, const WarningSink& warn,
-        ResultSink results);
+    Pipeline(OdometryConfig config, Executor& executor, WarningSink warn, EventSink events);
+    ~Pipeline();
+    Pipeline(const Pipeline&) = delete;
+    Pipeline& operator=(const Pipeline&) = delete;
 
     void add(const ImuSample& sample);
     void add(Scan scan);
@@ -27,35 +28,35 @@ class Pipeline
     /** No more data: processes what was held back. */
     void finish();
 
-    bool withImu() const { return mode_ != Mode::WithoutImu; }
+    /** False as soon as it is clear that the estimation runs without an IMU from its start on. */
+    bool withImu() const;
     const std::optional<Initialization>& initialization() const { return initialization_; }
+    /** Scans that wait for the IMU or for a start. */
+    std::size_t waiting() const;
+    /** Cells or points in the local map. */
+    std::size_t mapSize() const { return odometry_.mapSize(); }
 
  private:
-    enum class Mode
-    {
-        Undecided,  //!< no IMU sample and not enough scans yet
-        WithImu,
-        WithoutImu,
-    };
-
-    void begin(const Initialization& initialization);
-    void beginWithoutImu();
-    void processReady(bool all);
-    std::size_t readyScans() const;
-    void bootstrap();
-    TriedStart settle(const Initialization& initialization);
-    std::vector<ScanResult> tryStart(const Initialization& start);
+    void advance();
+    void findStart();
+    void start();
+    const ImuSamples* samplesFor(const Scan& scan) const;
+    std::vector<ScanResult> firstScansFrom(const Initialization& start);
     void process(const Scan& scan);
+    void refineLast(const ScanResult& next);
+    void judge(const ScanResult& result);
+    void warn(Time t, const std::string& kind, const std::string& text) const;
 
-    const OdometryConfig& config_;
+    OdometryConfig config_;
     WarningSink warn_;
-    ResultSink results_;
-    Odometry odometry_;
+    EventSink events_;
+    std::unique_ptr<Synchronizer> streams_;
     Initializer initializer_;
+    Odometry odometry_;
     std::optional<Initialization> initialization_;
-    Mode mode_ = Mode::Undecided;
-    bool bootstrapped_ = false;
-    std::deque<Scan> waiting_;
-    ImuSamples imu_;
+    std::optional<Sweep> last_sweep_;  // whose end is not final yet
+    std::string lost_;                 // cause; empty: the pose is not in doubt
+    std::size_t estimated_ = 0;
+    bool needs_imu_;
 };
 }  // namespace taut

@@ -69,10 +69,15 @@ class Initializer
     /** Takes the next sample; true as soon as there is a result. */
     bool add(const ImuSample& sample);
 
-    /** No more samples: makes the best of what there is; false if there was nothing. */
+    /** No more samples: makes the best of what there is. False if there was nothing, or if a rest
+     * was to be waited for and none came. */
     bool finish();
 
     const std::optional<Initialization>& result() const { return result_; }
+
+    /** No start that is still to be found lies before this time; nothing before the first sample.
+     */
+    std::optional<Time> earliestStart() const;
 
  private:
     struct Window
@@ -94,6 +99,7 @@ class Initializer
     bool plausibleRest(const Window& w) const;
     void onMotion(Time t);
     void startInMotion(Time t, double rested);
+    void reportWaiting(Time t, double rested);
     Initialization fromRest() const;
     double swayAtRest() const;
     Initialization fromMotion() const;

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "taut/core/Scan.h"
+#include "taut/factors/SweepPath.h"
+
+namespace taut
+{
+/** A sweep with all that its path is made of, so that its points can be undistorted again when its
+ * ends are known better: by the scan after it, or after a loop was closed. Thread-safe to read. */
+struct Sweep
+{
+    Scan scan;  //!< raw points in the body frame at their own times
+    Undistortion mode = Undistortion::None;
+    PreintegratedImu motion;  //!< from the end of the sweep back to `begin`
+    NavState prior_begin;     //!< the states before the sweep was matched
+    NavState prior_end;
+    NavState begin;  //!< the state at the end of the sweep before, as this sweep left it
+    NavState end;    //!< the state at the end of this sweep, as this sweep left it
+
+    bool empty() const { return motion.knots.empty(); }
+
+    /** The points in the world frame [m] along the path between two end states. Same order as
+     * scan.points. */
+    std::vector<Vector3d> undistorted(const NavState& from, const NavState& to) const;
+};
+}  // namespace taut
