@@ -63,8 +63,23 @@ void Pipeline::add(Scan scan)
 
 void Pipeline::finish()
 {
-    streams_->end();
-    advance();
+    if (finished_) return;
+    finished_ = true;
+    try
+    {
+        streams_->end();
+        advance();
+    }
+    catch (...)
+    {
+        tellEnd();  // what was estimated is not lost with the scan that failed
+        throw;
+    }
+    tellEnd();
+}
+
+void Pipeline::tellEnd()
+{
     if (last_sweep_) events_(Refined{*last_sweep_, last_sweep_->end});
     last_sweep_.reset();
     events_(Ended{odometry_.started() ? odometry_.time() : 0});

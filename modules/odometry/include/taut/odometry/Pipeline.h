@@ -25,7 +25,8 @@ class Pipeline
     void add(const ImuSample& sample);
     void add(Scan scan);
 
-    /** No more data: processes what was held back. */
+    /** No more data: processes what was held back. Does nothing the second time. Throws what
+     * processing throws, after the last events were told. */
     void finish();
 
     /** False as soon as it is clear that the estimation runs without an IMU from its start on. */
@@ -38,6 +39,7 @@ class Pipeline
 
  private:
     void advance();
+    void tellEnd();
     void findStart();
     void start();
     const ImuSamples* samplesFor(const Scan& scan) const;
@@ -57,6 +59,6 @@ class Pipeline
     std::optional<Sweep> last_sweep_;  // whose end is not final yet
     std::string lost_;                 // cause; empty: the pose is not in doubt
     std::size_t estimated_ = 0;
-    bool needs_imu_;
+    bool needs_imu_, finished_ = false;
 };
 }  // namespace taut

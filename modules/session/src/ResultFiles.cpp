@@ -1,4 +1,4 @@
-#include "ResultFiles.h"
+#include "taut/session/ResultFiles.h"
 
 #include <stdexcept>
 
@@ -28,9 +28,8 @@ std::ostream& operator<<(std::ostream& out, const Vector3d& v)
 }
 }  // namespace
 
-ResultFiles::ResultFiles(const std::string& folder, bool refined, bool points)
+ResultFiles::ResultFiles(const std::string& folder, bool points)
     : folder_(folder),
-      refined_(refined),
       tum_(folder + "/trajectory.tum"),
       kitti_(open(folder + "/trajectory_kitti.txt")),
       states_(open(folder + "/states.csv")),
@@ -49,21 +48,15 @@ ResultFiles::ResultFiles(const std::string& folder, bool refined, bool points)
 
 void ResultFiles::add(const ScanResult& result)
 {
-    const NavState& x = result.estimate.state;
-    // Without an IMU the second scan could move the first, where the map begins, only along a speed
-    // that is not known.
-    const bool refined = refined_ && (result.with_imu || poses_ > 0);
-    if (pending_)
-        writePose(pending_->t, refined ? result.previous.T_world_imu : pending_->T_world_imu);
-    pending_ = StampedPose{x.t, x.T_world_imu};
     writeState(result);
     writeTiming(result);
-    if (points_) points_->write({x.t, result.undistorted});
+    if (points_) points_->write({result.estimate.state.t, result.undistorted});
 }
 
-void ResultFiles::writePose(Time t, const Pose& pose)
+void ResultFiles::addPose(const StampedPose& stamped)
 {
-    tum_.write({t, pose});
+    const Pose& pose = stamped.T_world_imu;
+    tum_.write(stamped);
     kitti_ << kittiLine(pose) << '\n';
     if (last_) length_ += (pose.p - last_->p).norm();
     last_ = pose;
@@ -97,8 +90,6 @@ void ResultFiles::writeTiming(const ScanResult& r)
 
 void ResultFiles::close()
 {
-    if (pending_) writePose(pending_->t, pending_->T_world_imu);
-    pending_.reset();
     tum_.close();
     if (points_) points_->close();
     taut::close(kitti_, folder_ + "/trajectory_kitti.txt");

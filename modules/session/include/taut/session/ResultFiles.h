@@ -16,11 +16,14 @@ namespace taut
 class ResultFiles
 {
  public:
-    /** `refined`: a pose is written as the scan after it left it, one scan late. `points`:
-     * undistorted.points is written too, of the results' undistorted points. */
-    ResultFiles(const std::string& folder, bool refined, bool points);
+    /** `points`: undistorted.points is written too, of the results' undistorted points. Throws
+     * std::runtime_error if a file cannot be written. */
+    ResultFiles(const std::string& folder, bool points);
 
+    /** The next line of states.csv and timing.csv. */
     void add(const ScanResult& result);
+    /** The next pose of the trajectory. */
+    void addPose(const StampedPose& pose);
     void close();
 
     int poses() const { return poses_; }
@@ -29,16 +32,13 @@ class ResultFiles
     const std::vector<Pose>& sample() const { return sample_; }
 
  private:
-    void writePose(Time t, const Pose& pose);
     void writeState(const ScanResult& result);
     void writeTiming(const ScanResult& result);
 
     std::string folder_;
-    bool refined_;
     TumWriter tum_;
     std::ofstream kitti_, states_, timing_;
     std::optional<PointTruthWriter> points_;
-    std::optional<StampedPose> pending_;
     std::optional<Pose> last_;
     std::vector<Pose> sample_;
     std::size_t sample_stride_ = 1;

@@ -7,6 +7,7 @@
 #include "taut/core/WarningLog.h"
 #include "taut/odometry/Odometry.h"
 #include "taut/rawlog/RawlogSource.h"
+#include "taut/session/Doubts.h"
 
 namespace taut
 {
@@ -29,7 +30,8 @@ class Metrics
         double occupancy_resolution = 0;
         std::string mode, method_file;
         int threads = 0;
-        double wall_seconds = 0;  //!< of the processing, without pictures
+        std::vector<Doubt> doubts;  //!< stretches in which the pose was in doubt
+        double wall_seconds = 0;    //!< of the processing, without pictures
     };
     /** JSON text. Hashes the input: reads it once. */
     std::string json(const Summary& summary, const WarningLog& warnings) const;

@@ -1,4 +1,4 @@
-#include "MapExport.h"
+#include "taut/session/MapExport.h"
 
 namespace taut
 {

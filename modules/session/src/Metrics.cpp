@@ -1,4 +1,4 @@
-#include "Metrics.h"
+#include "taut/session/Metrics.h"
 
 #include <openssl/evp.h>
 
@@ -105,6 +105,13 @@ std::string Metrics::json(const Summary& s, const WarningLog& warnings) const
         {"not_converged_scans", not_converged_},
         {"mean_iterations", iterations_ / n},
         {"mean_correspondences", correspondences_ / n}};
+    j["doubtful"] = nlohmann::ordered_json::array();
+    for (const Doubt& d : s.doubts)
+        j["doubtful"].push_back(
+            {{"from", static_cast<double>(d.from) * 1e-9},
+             {"to", static_cast<double>(d.to) * 1e-9},
+             {"cause", d.cause},
+             {"recovered", d.recovered}});
     j["map"] = {
         {"points", s.map_points},
         {"window_cells", s.map_cells},

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "taut/core/WarningLog.h"
+#include "taut/odometry/Pipeline.h"
+#include "taut/rawlog/RawlogSource.h"
+#include "taut/session/Doubts.h"
+#include "taut/session/Method.h"
+#include "taut/session/Metrics.h"
+#include "taut/session/ResultFiles.h"
+
+namespace taut
+{
+struct SessionConfig
+{
+    Method method;
+    std::string folder;       //!< of the results; has to be there
+    std::string input;        //!< file of the measurements: named and hashed in metrics.json
+    std::string method_file;  //!< named in metrics.json
+    int threads = 1;
+    bool pictures = true;
+};
+
+/** How a session ended. Poses, map and metrics are on the disk in any case. */
+struct SessionOutcome
+{
+    int poses = 0;
+    double length = 0;                                 //!< [m] of the trajectory
+    double duration = 0;                               //!< [s] of the recording
+    double wall_seconds = 0, milliseconds_a_scan = 0;  //!< of the estimation
+    std::size_t map_points = 0;
+    bool pictures_failed = false;
+    bool interrupted = false;
+    /** A part of the input was not used, or a stretch of the pose is in doubt: metrics.json tells
+     * which. */
+    bool partly = false;
+    std::string failure;  //!< what ended the estimation early; empty: nothing did
+};
+
+/** One run from measurements to a folder of results: trajectory, states, map, occupancy octree,
+ * pictures and metrics. Whatever ends it, what was computed up to there is written.
+ *
+ * With a stream there is run(). A program with sensors of its own calls add() for each measurement
+ * and finish() at the end. Not thread-safe; several sessions can run at once in one program. */
+class Session
+{
+ public:
+    /** `warnings` gets all warnings and is asked for metrics.json; it must outlive this. `events`
+     * (may be empty) gets what the Pipeline tells, after it was written. Throws std::runtime_error
+     * if a file cannot be written. */
+    Session(const SessionConfig& config, WarningLog& warnings, EventSink events = {});
+    ~Session();
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    /** Throws what the estimation or the writing throws; finish() can still be called. */
+    void add(Measurement measurement);
+
+    /** Completes all files. `log` and `incomplete` tell what was read. */
+    SessionOutcome finish(const RawlogProgress& log, bool incomplete, bool interrupted = false);
+
+    /** Reads a stream to its end, or until `go_on` returns false. Calls it after each measurement
+     * with the share of the stream that is read (0 to 1). Exceptions end the estimation, not the
+     * session: they are told in the outcome. */
+    SessionOutcome run(MeasurementStream& log, const std::function<bool(double)>& go_on);
+
+    int scans() const { return metrics_.scans(); }
+    double duration() const { return metrics_.duration(); }  //!< [s] estimated so far
+
+ private:
+    void take(const Event& event);
+    std::string processAll(
+        MeasurementStream& log, const std::function<bool(double)>& go_on, bool& interrupted);
+    bool drawPictures() const;
+    std::vector<std::string> caption() const;
+    void writeMetrics(const RawlogProgress& log, bool incomplete, bool interrupted);
+    bool usedPartly(const RawlogProgress& log, bool incomplete) const;
+
+    SessionConfig config_;
+    WarningLog& warnings_;
+    EventSink events_;
+    Executor executor_;
+    MapExport map_;
+    ResultFiles files_;
+    Metrics metrics_;
+    Doubts doubts_;
+    Pipeline pipeline_;
+    double wall_seconds_ = 0;
+};
+}  // namespace taut

@@ -1,0 +1,202 @@
+#include "taut/session/Session.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "recording.h"
+#include "taut/odometry/registerAll.h"
+#include "taut/render/OSMesaRenderer.h"
+#include "temporary_folder.h"
+
+using namespace taut;
+using namespace taut::test;
+
+namespace
+{
+/** Measurements out of memory, in the order of time. */
+class Player : public MeasurementStream
+{
+ public:
+    Player(const ImuSamples& imu, const std::vector<Scan>& scans)
+    {
+        auto sample = imu.begin();
+        for (const Scan& scan : scans)
+        {
+            for (; sample != imu.end() && sample->t <= scan.end; ++sample)
+                all_.emplace_back(*sample);
+            all_.emplace_back(scan);
+        }
+        for (; sample != imu.end(); ++sample) all_.emplace_back(*sample);
+    }
+
+    std::optional<Measurement> next() override
+    {
+        if (at_ == throws_at) throw std::runtime_error("the cable was cut");
+        if (at_ == all_.size()) return std::nullopt;
+        return all_[at_++];
+    }
+    RawlogProgress progress() const override
+    {
+        RawlogProgress p;
+        p.bytes_read = at_;
+        p.bytes_total = all_.size();
+        return p;
+    }
+    bool incomplete() const override { return false; }
+
+    std::size_t throws_at = static_cast<std::size_t>(-1);
+    std::size_t size() const { return all_.size(); }
+
+ private:
+    std::vector<Measurement> all_;
+    std::size_t at_ = 0;
+};
+
+class SessionTest : public ::testing::Test
+{
+ protected:
+    SessionTest()
+    {
+        registerAll();
+        registerRenderers();
+        ConfigSection root;
+        config.method = Method::read(root, std::nullopt);
+        config.method.odometry.initialization.rest_duration = 1.2;
+        config.folder = folder / "run";
+        std::filesystem::create_directory(config.folder);
+        config.pictures = false;
+        recording.swing = 0.3;
+        recording.duration = 4;
+        imu = recording.imu();
+        scans = recording.scans();
+    }
+
+    std::size_t linesOf(const std::string& name) const
+    {
+        std::ifstream file(config.folder + "/" + name);
+        return static_cast<std::size_t>(std::count(std::istreambuf_iterator<char>(file), {}, '\n'));
+    }
+
+    nlohmann::json metrics() const
+    {
+        std::ifstream file(folder / "run/metrics.json");
+        return nlohmann::json::parse(file);
+    }
+
+    TemporaryFolder folder;
+    Recording recording;
+    ImuSamples imu;
+    std::vector<Scan> scans;
+    SessionConfig config;
+    WarningLog warnings;
+};
+}  // namespace
+
+TEST_F(SessionTest, LeavesResultsOfAStream)
+{
+    Player player(imu, scans);
+    std::size_t asked = 0, states = 0;
+    Session session(
+        config, warnings,
+        [&](const Event& e) { states += std::holds_alternative<Refined>(e) ? 1 : 0; });
+    const SessionOutcome outcome = session.run(player, [&](double) { return ++asked > 0; });
+    EXPECT_EQ(outcome.failure, "");
+    EXPECT_FALSE(outcome.partly);
+    EXPECT_EQ(outcome.poses, static_cast<int>(scans.size()));
+    EXPECT_EQ(states, scans.size());
+    EXPECT_EQ(asked, player.size());
+    EXPECT_GE(linesOf("trajectory.tum"), scans.size());
+    EXPECT_GT(outcome.map_points, 1000u);
+    EXPECT_GT(std::filesystem::file_size(folder / "run/map.bt"), 100u);
+    EXPECT_TRUE(metrics()["doubtful"].empty());
+}
+
+TEST_F(SessionTest, FedByHandItIsTheSame)
+{
+    Player player(imu, scans), again(imu, scans);
+    const auto content = [&]
+    {
+        std::ifstream file(folder / "run/trajectory.tum");
+        return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    Session(config, warnings).run(player, [](double) { return true; });
+    const std::string by_stream = content();
+    Session session(config, warnings);
+    while (auto m = again.next()) session.add(std::move(*m));
+    EXPECT_EQ(session.finish(again.progress(), false).poses, static_cast<int>(scans.size()));
+    EXPECT_EQ(content(), by_stream);
+}
+
+TEST_F(SessionTest, SavesWhatWasDoneBeforeAStreamFailed)
+{
+    Player player(imu, scans);
+    player.throws_at = player.size() / 2;
+    const SessionOutcome outcome =
+        Session(config, warnings).run(player, [](double) { return true; });
+    EXPECT_EQ(outcome.failure, "the cable was cut");
+    EXPECT_GT(outcome.poses, 15);
+    EXPECT_GE(linesOf("trajectory.tum"), static_cast<std::size_t>(outcome.poses));
+    EXPECT_EQ(metrics()["result"]["poses"], outcome.poses);
+}
+
+TEST_F(SessionTest, AnInterruptedOneIsPartial)
+{
+    Player player(imu, scans);
+    std::size_t left = player.size() / 2;
+    const SessionOutcome outcome =
+        Session(config, warnings).run(player, [&](double) { return --left > 0; });
+    EXPECT_TRUE(outcome.interrupted);
+    EXPECT_TRUE(outcome.partly);
+    EXPECT_GT(outcome.poses, 15);
+    EXPECT_LT(outcome.poses, static_cast<int>(scans.size()));
+}
+
+TEST_F(SessionTest, AnImuThatDiesMakesItPartialAndIsTold)
+{
+    imu.resize(imu.size() / 2);
+    Player player(imu, scans);
+    const SessionOutcome outcome =
+        Session(config, warnings).run(player, [](double) { return true; });
+    EXPECT_TRUE(outcome.partly);
+    EXPECT_EQ(outcome.poses, static_cast<int>(scans.size()));
+    const auto doubts = metrics()["doubtful"];
+    ASSERT_EQ(doubts.size(), 1u);
+    EXPECT_EQ(doubts[0]["cause"], "imu_silent");
+    EXPECT_NEAR(doubts[0]["from"].get<double>(), toSeconds(imu.back().t), 0.3);
+    EXPECT_FALSE(doubts[0]["recovered"].get<bool>());
+}
+
+TEST_F(SessionTest, ALidarThatEndsMakesItPartial)
+{
+    scans.resize(30);
+    Player player(imu, scans);
+    EXPECT_TRUE(Session(config, warnings).run(player, [](double) { return true; }).partly);
+    EXPECT_EQ(warnings.count("lidar_ended"), 1u);
+}
+
+TEST_F(SessionTest, TwoAtOnceDoNotDisturbEachOther)
+{
+    SessionConfig other_config = config;
+    other_config.folder = folder / "other";
+    std::filesystem::create_directory(other_config.folder);
+    Player player(imu, scans), second(imu, scans);
+    WarningLog other_warnings;
+    Session one(config, warnings), other(other_config, other_warnings);
+    while (auto m = player.next())
+    {
+        one.add(*m);
+        other.add(std::move(*m));
+    }
+    one.finish(player.progress(), false);
+    other.finish(player.progress(), false);
+    const auto content = [](const std::filesystem::path& path)
+    {
+        std::ifstream file(path);
+        return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    EXPECT_EQ(content(folder / "run/trajectory.tum"), content(folder / "other/trajectory.tum"));
+}
