@@ -50,6 +50,42 @@ TEST(ATruncatedLog, GivesThreeAndTheResultsUpToThere)
     EXPECT_EQ(metricsOf(out)["input"]["incomplete"], true);
 }
 
+/** The sample, with IMU samples only up to a time since its start [s]. */
+void writeWithDyingImu(const std::string& path, double dies)
+{
+    RawlogConfig config;
+    config.path = kSample;
+    RawlogSource source(config);
+    RawlogWriter writer(path);
+    std::optional<Time> first;
+    while (const auto measurement = source.next())
+    {
+        if (const Scan* scan = std::get_if<Scan>(&*measurement)) writer.write(*scan);
+        const ImuSample* sample = std::get_if<ImuSample>(&*measurement);
+        if (sample == nullptr) continue;
+        if (!first) first = sample->t;
+        if (toSeconds(sample->t - *first) < dies) writer.write(*sample);
+    }
+    writer.close();
+}
+
+TEST(AnImuThatDies, GivesThreeAndTheLidarGoesOn)
+{
+    const TemporaryFolder folder;
+    const std::string log = folder / "log.rawlog", out = folder / "out";
+    writeWithDyingImu(log, 6);
+    const ProgramRun run = slam(log, out, "-s initialization.rest_duration=3");
+    EXPECT_EQ(run.exit_code, 3) << run.output;
+    EXPECT_THAT(run.output, HasSubstr("imu_silent"));
+    const Trajectory whole = readTum(kSampleTruth);
+    EXPECT_NEAR(toSeconds(readTum(out + "/trajectory.tum").back().t - whole.back().t), 0, 0.3);
+    const auto doubtful = metricsOf(out)["doubtful"];
+    ASSERT_FALSE(doubtful.empty());
+    EXPECT_EQ(doubtful[0]["cause"], "imu_silent");
+    EXPECT_LT(positionError(kSampleTruth, out + "/trajectory.tum"), 0.5);
+    EXPECT_LT(metricsOf(out)["memory"]["peak_mb"], 400);
+}
+
 TEST(ALogWithoutImu, FallsBackToConstantVelocityAndSaysSo)
 {
     const TemporaryFolder folder;
