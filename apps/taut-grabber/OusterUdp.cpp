@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "taut/importing/ouster/Decoder.h"
+#include "taut/packets/ouster/Decoder.h"
 
 IMPLEMENTS_GENERIC_SENSOR(OusterUdp, taut)
 

@@ -5,8 +5,8 @@
 
 #include "ImportingSensor.h"
 #include "UdpReceiver.h"
-#include "taut/importing/ouster/SensorInfo.h"
 #include "taut/importing/pcap/PacketDecoder.h"
+#include "taut/packets/ouster/SensorInfo.h"
 
 namespace taut
 {

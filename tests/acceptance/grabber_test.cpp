@@ -88,7 +88,7 @@ class RawlogGrabber : public testing::Test
     nlohmann::json facts_;
     ProgramRun run_;
     RawlogConfig config_;
-    RawlogProgress progress_;
+    StreamProgress progress_;
     std::vector<Scan> scans_;
     ImuSamples imu_;
     std::string warnings_;

@@ -5,7 +5,7 @@
 #include "OusterSimulator.h"
 #include "PcapWriter.h"
 #include "import_support.h"
-#include "taut/importing/ouster/Decoder.h"
+#include "taut/packets/ouster/Decoder.h"
 #include "temporary_folder.h"
 
 namespace taut::test

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "taut/rawlog/velodyne/PacketWriter.h"
+#include "taut/packets/velodyne/PacketWriter.h"
 
 namespace taut::test
 {

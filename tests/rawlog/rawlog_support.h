@@ -40,7 +40,7 @@ class RawlogTest : public testing::Test
         std::vector<Measurement> all;
         ImuSamples imu;
         std::vector<Scan> scans;
-        RawlogProgress progress;
+        StreamProgress progress;
         WarningLog warnings;
         bool incomplete = false;
     };

@@ -1,4 +1,4 @@
-#include "taut/rawlog/velodyne/Decoder.h"
+#include "taut/packets/velodyne/Decoder.h"
 
 #include <gmock/gmock.h>
 

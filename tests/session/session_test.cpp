@@ -39,9 +39,9 @@ class Player : public MeasurementStream
         if (at_ == all_.size()) return std::nullopt;
         return all_[at_++];
     }
-    RawlogProgress progress() const override
+    StreamProgress progress() const override
     {
-        RawlogProgress p;
+        StreamProgress p;
         p.bytes_read = at_;
         p.bytes_total = all_.size();
         return p;

@@ -9,7 +9,7 @@ namespace
 {
 using Json = nlohmann::ordered_json;
 
-std::string asText(const RawlogProgress& log)
+std::string asText(const StreamProgress& log)
 {
     std::string out = format(
         "%.3f s, %.1f MB\nsensors\n", toSeconds(log.now - log.first),
@@ -84,7 +84,7 @@ std::string asText(const Finding& f, Time first)
     return "  [" + f.kind + "]" + when + ": " + f.text + often + "\n      " + f.advice + "\n";
 }
 
-Json asJson(const RawlogProgress& log)
+Json asJson(const StreamProgress& log)
 {
     Json out = Json::array();
     for (const auto& [sensor, observations] : log.sensors)

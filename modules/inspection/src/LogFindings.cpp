@@ -61,13 +61,13 @@ void LogFindings::add(const Warning& warning)
     f.value = static_cast<double>(f.count);
 }
 
-void LogFindings::watch(const RawlogProgress& progress)
+void LogFindings::watch(const StreamProgress& progress)
 {
     if (first_nan_ == 0 && progress.points_not_finite > 0) first_nan_ = progress.now;
     if (first_bad_time_ == 0 && progress.points_bad_time > 0) first_bad_time_ = progress.now;
 }
 
-Findings LogFindings::findings(const RawlogProgress& progress, bool own_units) const
+Findings LogFindings::findings(const StreamProgress& progress, bool own_units) const
 {
     Findings found;
     for (const auto& [kind, finding] : by_kind_)

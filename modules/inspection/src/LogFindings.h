@@ -16,10 +16,10 @@ class LogFindings
     void add(const Warning& warning);
 
     /** Notes since when there are points without finite coordinates or with an impossible time. */
-    void watch(const RawlogProgress& progress);
+    void watch(const StreamProgress& progress);
 
     /** `own_units`: the units were judged better than by the reader. */
-    Findings findings(const RawlogProgress& progress, bool own_units) const;
+    Findings findings(const StreamProgress& progress, bool own_units) const;
 
  private:
     std::map<std::string, Finding> by_kind_;

@@ -20,7 +20,7 @@ struct Step
     std::vector<Warning> warnings;
     std::optional<Measurement> measurement;
     std::exception_ptr error;
-    RawlogProgress progress;
+    StreamProgress progress;
     bool incomplete = false;
 
     bool last() const { return !measurement; }
@@ -63,7 +63,7 @@ struct PrefetchedRawlog::Impl
     std::size_t scans = 0;  // in steps
     bool stop = false;
 
-    RawlogProgress progress;  // the consumer's own from here
+    StreamProgress progress;  // the consumer's own from here
     bool incomplete = false, finished = false;
 
     std::thread reader;  // last: the thread uses all of the above
@@ -130,7 +130,7 @@ std::optional<Measurement> PrefetchedRawlog::next()
     return impl_->next();
 }
 
-RawlogProgress PrefetchedRawlog::progress() const
+StreamProgress PrefetchedRawlog::progress() const
 {
     return impl_->progress;
 }

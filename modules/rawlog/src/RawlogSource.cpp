@@ -93,7 +93,7 @@ struct RawlogSource::Impl
     WarningSink sink;
     ObservationReader reader;
     SensorChoice lidar, imu;
-    RawlogProgress progress;
+    StreamProgress progress;
 
  private:
     std::deque<CObservation::Ptr> ahead;
@@ -400,7 +400,7 @@ std::optional<Measurement> RawlogSource::next()
     return impl_->next();
 }
 
-RawlogProgress RawlogSource::progress() const
+StreamProgress RawlogSource::progress() const
 {
     return impl_->progress;
 }

@@ -7,7 +7,7 @@
 
 #include "MrptConversion.h"
 #include "ObservationToScan.h"
-#include "taut/rawlog/velodyne/Decoder.h"
+#include "taut/packets/velodyne/Decoder.h"
 
 namespace taut
 {

@@ -19,7 +19,11 @@ void MapExportConfig::declare(ConfigSection& s)
 }
 
 MapExport::MapExport(const MapExportConfig& config, const std::string& folder)
-    : config_(config), folder_(folder), ply_(folder + "/map.ply"), occupancy_(config.occupancy)
+    : config_(config),
+      folder_(folder),
+      ply_(folder + "/map.ply"),
+      sample_(kMaxSample),
+      occupancy_(config.occupancy)
 {
 }
 
@@ -27,12 +31,7 @@ void MapExport::addPoint(const Vector3d& p)
 {
     if (!voxels_.insert(voxelKey(p, 1 / config_.point_spacing))) return;
     ply_.append({p.cast<float>(), 0});
-    if ((ply_.size() - 1) % sample_stride_ != 0) return;
-    sample_.emplace_back(p.cast<float>());
-    if (sample_.size() < kMaxSample) return;
-    for (std::size_t i = 0; 2 * i < sample_.size(); i++) sample_[i] = sample_[2 * i];
-    sample_.resize((sample_.size() + 1) / 2);
-    sample_stride_ *= 2;
+    sample_.add(p.cast<float>());
 }
 
 bool MapExport::isKey(const NavState& state) const

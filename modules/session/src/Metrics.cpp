@@ -61,14 +61,7 @@ void Metrics::add(const ScanResult& result)
     max_ms_ = std::max(max_ms_, result.times.total());
     iterations_ += result.iterations;
     correspondences_ += result.correspondences;
-    if (static_cast<std::size_t>(scans_) % memory_stride_ == 0)
-        memory_.push_back(residentMemory(false));
-    if (memory_.size() >= 4096)
-    {
-        for (std::size_t i = 0; 2 * i < memory_.size(); i++) memory_[i] = memory_[2 * i];
-        memory_.resize((memory_.size() + 1) / 2);
-        memory_stride_ *= 2;
-    }
+    memory_.add(residentMemory(false));
     scans_++;
 }
 
@@ -127,9 +120,10 @@ std::string Metrics::json(const Summary& s, const WarningLog& warnings) const
         {"wall_s", s.wall_seconds},
         {"times_real_time", s.wall_seconds > 0 ? duration() / s.wall_seconds : 0}};
     nlohmann::ordered_json quarters = nlohmann::ordered_json::array();
-    if (!memory_.empty())
+    const std::vector<std::size_t>& memory = memory_.items();
+    if (!memory.empty())
         for (const std::size_t q : {1, 2, 3, 4})
-            quarters.push_back(megabytes(memory_[(memory_.size() - 1) * q / 4]));
+            quarters.push_back(megabytes(memory[(memory.size() - 1) * q / 4]));
     j["memory"] = {{"peak_mb", megabytes(residentMemory(true))}, {"mb_at_each_quarter", quarters}};
     j["warnings"] = nlohmann::ordered_json::object();
     for (const auto& [kind, count] : warnings.counts()) j["warnings"][kind] = count;

@@ -33,7 +33,8 @@ ResultFiles::ResultFiles(const std::string& folder, bool points)
       tum_(folder + "/trajectory.tum"),
       kitti_(open(folder + "/trajectory_kitti.txt")),
       states_(open(folder + "/states.csv")),
-      timing_(open(folder + "/timing.csv"))
+      timing_(open(folder + "/timing.csv")),
+      sample_(kMaxSample)
 {
     if (points) points_.emplace(folder + "/undistorted.points");
     states_ << "t,vx,vy,vz,ba_x,ba_y,ba_z,bg_x,bg_y,bg_z";
@@ -60,12 +61,8 @@ void ResultFiles::addPose(const StampedPose& stamped)
     kitti_ << kittiLine(pose) << '\n';
     if (last_) length_ += (pose.p - last_->p).norm();
     last_ = pose;
-    if (static_cast<std::size_t>(poses_) % sample_stride_ == 0) sample_.push_back(pose);
+    sample_.add(pose);
     poses_++;
-    if (sample_.size() < kMaxSample) return;
-    for (std::size_t i = 0; 2 * i < sample_.size(); i++) sample_[i] = sample_[2 * i];
-    sample_.resize((sample_.size() + 1) / 2);
-    sample_stride_ *= 2;
 }
 
 void ResultFiles::writeState(const ScanResult& r)

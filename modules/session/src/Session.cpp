@@ -104,7 +104,7 @@ std::string Session::processAll(
     return {};
 }
 
-SessionOutcome Session::finish(const RawlogProgress& log, bool incomplete, bool interrupted)
+SessionOutcome Session::finish(const StreamProgress& log, bool incomplete, bool interrupted)
 {
     SessionOutcome outcome;
     outcome.interrupted = interrupted;
@@ -130,7 +130,7 @@ SessionOutcome Session::finish(const RawlogProgress& log, bool incomplete, bool 
     return outcome;
 }
 
-bool Session::usedPartly(const RawlogProgress& log, bool incomplete) const
+bool Session::usedPartly(const StreamProgress& log, bool incomplete) const
 {
     if (incomplete || log.skipped > 0 || doubts_.serious()) return true;
     for (const char* kind : kUnused)
@@ -167,7 +167,7 @@ bool Session::drawPictures() const
     }
 }
 
-void Session::writeMetrics(const RawlogProgress& log, bool incomplete, bool interrupted)
+void Session::writeMetrics(const StreamProgress& log, bool incomplete, bool interrupted)
 {
     Metrics::Summary s;
     s.log = log;

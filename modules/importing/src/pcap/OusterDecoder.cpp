@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "taut/importing/ouster/Decoder.h"
 #include "taut/importing/pcap/PacketDecoder.h"
+#include "taut/packets/ouster/Decoder.h"
 
 namespace taut
 {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "taut/importing/ouster/Decoder.h"
 #include "taut/importing/pcap/PacketDecoder.h"
+#include "taut/packets/ouster/Decoder.h"
 
 namespace taut
 {

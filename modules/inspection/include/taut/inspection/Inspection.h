@@ -22,7 +22,7 @@ struct InspectionConfig
 /** What a recording is like. */
 struct Inspection
 {
-    RawlogProgress log;                     //!< sensors and counts
+    StreamProgress log;                     //!< sensors and counts
     bool incomplete = false;                //!< the file ends early or is damaged
     std::optional<LidarFacts> lidar;        //!< none: no scan could be read
     std::optional<ImuFacts> imu;            //!< none: no sample could be read

@@ -22,7 +22,7 @@ class PrefetchedRawlog : public MeasurementStream
     ~PrefetchedRawlog() override;
 
     std::optional<Measurement> next() override;
-    RawlogProgress progress() const override;
+    StreamProgress progress() const override;
     bool incomplete() const override;
 
  private:

@@ -1,23 +1,16 @@
 #pragma once
 
-#include <cstdint>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
-#include <variant>
 
-#include "taut/core/Imu.h"
-#include "taut/core/Scan.h"
+#include "taut/core/Measurement.h"
 #include "taut/core/Warning.h"
 #include "taut/rawlog/Rig.h"
 
 namespace taut
 {
-using Measurement = std::variant<ImuSample, Scan>;
-
 /** What to read of which rawlog. Label expressions are ECMAScript and must match the whole label.
  */
 struct RawlogConfig
@@ -29,49 +22,6 @@ struct RawlogConfig
     double to_time = std::numeric_limits<double>::infinity();  //!< [s]; no scan begins later
     int only_first_n = 0;  //!< end after that many scans; 0 = all
     Rig rig;               //!< what overrides the poses, units and clocks of the log
-};
-
-/** How far the reading is, and what was found up to there. */
-struct RawlogProgress
-{
-    Time first = 0;                //!< first stamp of a LiDAR or IMU
-    Time now = 0;                  //!< latest stamp read
-    std::uint64_t bytes_read = 0;  //!< of the file as it is on the disk: compressed if it is so
-    std::uint64_t bytes_total = 0;
-    std::size_t scans = 0, imu_samples = 0;  //!< given out
-    std::size_t skipped = 0;   //!< observations of the chosen sensors that could not be used
-    std::uint64_t points = 0;  //!< in the scans of the chosen LiDAR, dropped ones too
-    std::uint64_t points_not_finite = 0;  //!< of these: a coordinate is NaN or infinite
-    std::uint64_t points_bad_time = 0;    //!< of these: 2 s or more away from their scan's stamp
-    bool has_imu = false;                 //!< an IMU was found, at the latest 2 s into the log
-    std::string lidar_label, imu_label;   //!< as chosen; empty before the first of them
-    /** Observations by label and MRPT class, of all sensors, used or not. */
-    std::map<std::pair<std::string, std::string>, std::size_t> sensors;
-
-    /** 0 to 1, of the file: for a bar. */
-    double fraction() const
-    {
-        return bytes_total ? static_cast<double>(bytes_read) / static_cast<double>(bytes_total) : 0;
-    }
-};
-
-/** Measurements one after the other. */
-class MeasurementStream
-{
- public:
-    MeasurementStream() = default;
-    virtual ~MeasurementStream() = default;
-    MeasurementStream(const MeasurementStream&) = delete;
-    MeasurementStream& operator=(const MeasurementStream&) = delete;
-
-    /** The next measurement, or nothing at the end. */
-    virtual std::optional<Measurement> next() = 0;
-
-    /** As of the measurement last given out. */
-    virtual RawlogProgress progress() const = 0;
-
-    /** True at the end of a file that ended early or was damaged; the cause is in the warning. */
-    virtual bool incomplete() const = 0;
 };
 
 /** Streams the measurements of one LiDAR and one IMU out of a rawlog (observation or sensory-frame
@@ -111,7 +61,7 @@ class RawlogSource : public MeasurementStream
     /** Throws std::runtime_error if a second sensor of a kind appears, or if the whole log had no
      * LiDAR. */
     std::optional<Measurement> next() override;
-    RawlogProgress progress() const override;
+    StreamProgress progress() const override;
     bool incomplete() const override;
 
  private:

@@ -6,7 +6,7 @@
 
 #include "taut/core/Imu.h"
 #include "taut/core/Scan.h"
-#include "taut/rawlog/velodyne/PacketWriter.h"
+#include "taut/packets/velodyne/PacketWriter.h"
 
 namespace taut
 {

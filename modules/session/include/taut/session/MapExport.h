@@ -5,6 +5,7 @@
 
 #include "taut/core/Config.h"
 #include "taut/core/NavState.h"
+#include "taut/core/ThinnedSample.h"
 #include "taut/core/VoxelSet.h"
 #include "taut/files/PlyFile.h"
 #include "taut/map/OccupancyWorker.h"
@@ -36,7 +37,7 @@ class MapExport
     void finish(const WarningSink& warn);
 
     /** An even sample of the points of map.ply. */
-    const std::vector<Eigen::Vector3f>& sample() const { return sample_; }
+    const std::vector<Eigen::Vector3f>& sample() const { return sample_.items(); }
     std::size_t points() const { return ply_.size(); }
     std::size_t keyScans() const { return key_scans_; }
     double occupancyResolution() const { return occupancy_resolution_; }
@@ -49,8 +50,7 @@ class MapExport
     std::string folder_;
     PlyPointWriter ply_;
     VoxelSet voxels_;
-    std::vector<Eigen::Vector3f> sample_;
-    std::size_t sample_stride_ = 1;
+    ThinnedSample<Eigen::Vector3f> sample_;
     OccupancyWorker occupancy_;
     NavState last_key_;
     std::size_t key_scans_ = 0;

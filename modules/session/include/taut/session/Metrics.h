@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "taut/core/ThinnedSample.h"
 #include "taut/core/WarningLog.h"
 #include "taut/odometry/Odometry.h"
 #include "taut/rawlog/RawlogSource.h"
@@ -21,7 +22,7 @@ class Metrics
 
     struct Summary
     {
-        RawlogProgress log;
+        StreamProgress log;
         bool incomplete = false, interrupted = false;
         bool with_imu = true;
         double rest_seconds = 0;  //!< used by the initialisation
@@ -45,8 +46,7 @@ class Metrics
     int scans_ = 0, unmatched_ = 0, not_converged_ = 0;
     double total_ms_ = 0, max_ms_ = 0, iterations_ = 0, correspondences_ = 0;
     Time first_ = 0, last_ = 0;
-    std::vector<std::size_t> memory_;  //!< resident memory [kB], every so many scans
-    std::size_t memory_stride_ = 1;
+    ThinnedSample<std::size_t> memory_{4096};  //!< resident memory [kB], every so many scans
 };
 
 /** Resident memory of this process [kB]: now, or the highest so far. */

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "taut/core/ThinnedSample.h"
 #include "taut/odometry/Odometry.h"
 #include "taut/trajectory/PointTruth.h"
 #include "taut/trajectory/TrajectoryFile.h"
@@ -29,7 +30,7 @@ class ResultFiles
     int poses() const { return poses_; }
     double length() const { return length_; }  //!< [m]
     /** Poses for pictures: thinned where the trajectory is long. */
-    const std::vector<Pose>& sample() const { return sample_; }
+    const std::vector<Pose>& sample() const { return sample_.items(); }
 
  private:
     void writeState(const ScanResult& result);
@@ -40,8 +41,7 @@ class ResultFiles
     std::ofstream kitti_, states_, timing_;
     std::optional<PointTruthWriter> points_;
     std::optional<Pose> last_;
-    std::vector<Pose> sample_;
-    std::size_t sample_stride_ = 1;
+    ThinnedSample<Pose> sample_;
     int poses_ = 0;
     double length_ = 0;
 };

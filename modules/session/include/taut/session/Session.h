@@ -59,7 +59,7 @@ class Session
     void add(Measurement measurement);
 
     /** Completes all files. `log` and `incomplete` tell what was read. */
-    SessionOutcome finish(const RawlogProgress& log, bool incomplete, bool interrupted = false);
+    SessionOutcome finish(const StreamProgress& log, bool incomplete, bool interrupted = false);
 
     /** Reads a stream to its end, or until `go_on` returns false. Calls it after each measurement
      * with the share of the stream that is read (0 to 1). Exceptions end the estimation, not the
@@ -75,8 +75,8 @@ class Session
         MeasurementStream& log, const std::function<bool(double)>& go_on, bool& interrupted);
     bool drawPictures() const;
     std::vector<std::string> caption() const;
-    void writeMetrics(const RawlogProgress& log, bool incomplete, bool interrupted);
-    bool usedPartly(const RawlogProgress& log, bool incomplete) const;
+    void writeMetrics(const StreamProgress& log, bool incomplete, bool interrupted);
+    bool usedPartly(const StreamProgress& log, bool incomplete) const;
 
     SessionConfig config_;
     WarningLog& warnings_;

@@ -7,8 +7,8 @@
 
 #include "taut/core/Warning.h"
 #include "taut/importing/ImportSource.h"
-#include "taut/importing/ouster/SensorInfo.h"
 #include "taut/importing/pcap/PcapReader.h"
+#include "taut/packets/ouster/SensorInfo.h"
 
 namespace taut
 {

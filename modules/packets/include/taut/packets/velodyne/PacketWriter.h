@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "taut/core/Time.h"
-#include "taut/rawlog/velodyne/Decoder.h"
+#include "taut/packets/velodyne/Decoder.h"
 
 namespace taut::velodyne
 {

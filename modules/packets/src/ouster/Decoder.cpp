@@ -1,4 +1,4 @@
-#include "taut/importing/ouster/Decoder.h"
+#include "taut/packets/ouster/Decoder.h"
 
 #include <cmath>
 #include <cstdlib>

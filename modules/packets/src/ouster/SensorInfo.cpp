@@ -1,4 +1,4 @@
-#include "taut/importing/ouster/SensorInfo.h"
+#include "taut/packets/ouster/SensorInfo.h"
 
 #include <cmath>
 #include <cstdio>

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "taut/rawlog/velodyne/Decoder.h"
+#include "taut/packets/velodyne/Decoder.h"
 
 /** \file PacketLayout.h
  * Offsets of the fields of a data packet; all numbers little-endian. */

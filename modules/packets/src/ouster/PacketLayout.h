@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "taut/importing/ouster/SensorInfo.h"
+#include "taut/packets/ouster/SensorInfo.h"
 
 /** \file PacketLayout.h
  * Where the fields of a lidar packet are; all numbers little-endian. A packet is a header, columns

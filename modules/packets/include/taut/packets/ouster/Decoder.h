@@ -8,7 +8,7 @@
 
 #include "taut/core/Imu.h"
 #include "taut/core/Scan.h"
-#include "taut/importing/ouster/SensorInfo.h"
+#include "taut/packets/ouster/SensorInfo.h"
 
 /** \file Decoder.h
  * Ouster packets (UDP payloads) to scans and IMU samples. Pure functions over bytes: neither files

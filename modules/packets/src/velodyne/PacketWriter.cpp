@@ -1,4 +1,4 @@
-#include "taut/rawlog/velodyne/PacketWriter.h"
+#include "taut/packets/velodyne/PacketWriter.h"
 
 #include <cmath>
 #include <stdexcept>
