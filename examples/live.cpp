@@ -45,7 +45,7 @@ void print(const Event& event)
     std::printf(
         "%.1f s: %.4f %.4f %.4f m, %d of %d features matched\n", toSeconds(x.t),
         x.T_world_imu.p.x(), x.T_world_imu.p.y(), x.T_world_imu.p.z(),
-        estimated->result.correspondences, estimated->result.features);
+        estimated->result.report.correspondences, estimated->result.report.features);
 }
 }  // namespace
 

@@ -124,8 +124,8 @@ class Run
         progress_.clear();
         std::fprintf(
             stderr, "%s: %d of %d features matched, %d iterations, %.1f ms\n",
-            formatSeconds(r.estimate.state.t).c_str(), r.correspondences, r.features, r.iterations,
-            r.times.total());
+            formatSeconds(r.estimate.state.t).c_str(), r.report.correspondences, r.report.features,
+            r.report.iterations, r.report.times.total());
     }
 
     void report(const SessionOutcome& o) const

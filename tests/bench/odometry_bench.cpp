@@ -143,10 +143,10 @@ void wholeScan(benchmark::State& state)
             state.ResumeTiming();
         }
         const ScanResult r = odometry.process(recording().scans[k++], &recording().imu);
-        total.match += r.times.match;
-        total.solve += r.times.solve;
-        total.extract += r.times.extract;
-        total.insert += r.times.insert;
+        total.match += r.report.times.match;
+        total.solve += r.report.times.solve;
+        total.extract += r.report.times.extract;
+        total.insert += r.report.times.insert;
         solved += 1;
     }
     state.counters["match_ms"] = total.match / solved;

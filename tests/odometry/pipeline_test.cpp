@@ -152,7 +152,7 @@ TEST(Pipeline, FollowsAMotionByHandToMillimetres)
         EXPECT_TRUE(done.initialization->at_rest);
         for (const ScanResult& r : done.results)
         {
-            EXPECT_EQ(r.lidar_used, &r != &done.results.front());  // the first has no map
+            EXPECT_EQ(r.report.lidar_used, &r != &done.results.front());  // the first has no map
             EXPECT_GT(r.estimate.covariance.diagonal().minCoeff(), 0);
         }
     }
@@ -556,9 +556,9 @@ TEST(Pipeline, AScanThatSeesNothingFollowsTheImu)
     const Outcome done = run(dark);
     EXPECT_EQ(done.results.size(), dark.scans.size());
     EXPECT_EQ(done.log.count("few_correspondences"), 2u);
-    EXPECT_FALSE(done.results[25].lidar_used);
-    EXPECT_FALSE(done.results[27].lidar_used);
-    EXPECT_TRUE(done.results[28].lidar_used);
+    EXPECT_FALSE(done.results[25].report.lidar_used);
+    EXPECT_FALSE(done.results[27].report.lidar_used);
+    EXPECT_TRUE(done.results[28].report.lidar_used);
     EXPECT_LT(done.error(dark.recording), 0.01);
 }
 
@@ -689,7 +689,7 @@ TEST(Pipeline, AStartInMotionThatSeesNothingFollowsTheImu)
     EXPECT_GE(done.results.size(), blind.scans.size() - 1);
     for (const ScanResult& r : done.results)
     {
-        EXPECT_FALSE(r.lidar_used);
+        EXPECT_FALSE(r.report.lidar_used);
         EXPECT_TRUE(r.estimate.state.T_world_imu.p.allFinite());
     }
 }

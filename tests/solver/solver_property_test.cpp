@@ -110,13 +110,13 @@ TEST_P(AnySolver, SolvesWhereTheFullStepOvershoots)
 TEST_P(AnySolver, RefusesWhatIsNotANumber)
 {
     NanProblem problem(-1);
-    EXPECT_THROW(solver->solve(problem), std::runtime_error);
+    EXPECT_FALSE(solver->solve(problem).failure.empty());
 }
 
 TEST_P(AnySolver, RefusesAProblemWithoutAUniqueSolution)
 {
     SingularProblem problem;
-    EXPECT_THROW(solver->solve(problem), std::runtime_error);
+    EXPECT_FALSE(solver->solve(problem).failure.empty());
 }
 
 TEST_P(AnySolver, RejectsUnknownKeys)

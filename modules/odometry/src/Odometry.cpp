@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <stdexcept>
 
 #include "Registration.h"
 #include "Stopwatch.h"
@@ -27,13 +28,13 @@ std::array<double, 3> eigenvaluesOf(const Matrix3d& information)
 }
 }  // namespace
 
-bool isDoubtful(const ScanResult& result)
+bool isDoubtful(const ScanReport& report)
 {
     // While the pose is right the share varies between 0.67 and 1.1 of its mean, in simulated and
     // real recordings. At a place that is not where the map has it, half of the matches are false
     // or more.
     constexpr double kDoubtful = 0.6;
-    return result.lidar_used && result.fit() < kDoubtful * result.usual_fit;
+    return report.lidar_used && report.fit() < kDoubtful * report.usual_fit;
 }
 
 Odometry::Odometry(const OdometryConfig& config, Executor& executor, WarningSink warn)
@@ -86,45 +87,44 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples* imu)
     const Time begin = previous_.state.t;
     const Scan scan = transformScan(raw, config_.range, begin);
     result.with_imu = imu != nullptr;
-    result.scan_points = scan.points.size();
-    watch.stage(result.times.transform);
+    result.report.scan_points = scan.points.size();
+    watch.stage(result.report.times.transform);
 
     const PreintegratedImu motion = integrate(scan.end, imu);
     const NavState prior = predict(motion, previous_.state);
-    result.motion = motion.knots.back().delta;
-    result.duration = motion.duration();
     Undistortion mode = config_.estimation.undistortion;
     if (scan.already_undistorted) mode = Undistortion::None;
     // What was not measured in a gap before the sweep is not to be closed in the sweep.
     if (isIterated(mode) && result.with_imu && hasLongGap(motion)) mode = Undistortion::IteratedImu;
-    SweepPath path(mode, motion, previous_.state, prior);
+    const SweepPath predicted(mode, motion, previous_.state, prior);
     result.sweep.mode = mode;
     result.sweep.prior_begin = previous_.state;
     result.sweep.prior_end = prior;
-    watch.stage(result.times.preintegrate);
+    watch.stage(result.report.times.preintegrate);
 
     const Features features = extractor_->extract(scan, warn_);
-    result.features = static_cast<int>(features.points.size());
-    watch.stage(result.times.extract);
+    result.report.features = static_cast<int>(features.points.size());
+    watch.stage(result.report.times.extract);
 
-    estimate(features, motion, path, result);
-    watch.stage(result.times.solve);
-    result.times.solve -= result.times.match;
+    const SweepPath path = estimate(features, motion, predicted, result);
+    watch.stage(result.report.times.solve);
+    result.report.times.solve -= result.report.times.match;
 
     insert(scan, path, result);
     result.sweep.motion = motion;
     result.sweep.begin = result.previous;
     result.sweep.end = previous_.state;
-    watch.stage(result.times.insert);
+    watch.stage(result.report.times.insert);
     if (config_.keep_undistorted) result.undistorted = undistorted(raw, begin, path);
     return result;
 }
 
-void Odometry::estimate(
-    const Features& features, const PreintegratedImu& motion, SweepPath& path, ScanResult& result)
+SweepPath Odometry::estimate(
+    const Features& features, const PreintegratedImu& motion, const SweepPath& predicted,
+    ScanResult& result)
 {
     Registration registration(
-        config_, *map_, *solver_, executor_, previous_, motion, features, path);
+        config_, *map_, *solver_, executor_, previous_, motion, features, predicted);
     ScanProblem& problem = registration.problem();
     LidarFactor::PoseCovariance uncertain = problem.predictedPoseCovariance();
     if (result.with_imu && hasLongGap(motion) && !map_->empty())
@@ -137,14 +137,15 @@ void Odometry::estimate(
         const double rate = logSO3(motion.knots.back().delta.gamma).norm() / motion.duration();
         problem.setRest(rest_.at(problem.current(), problem.predictedCovariance(), rate));
     }
-    registration.iterate(uncertain, result);
+    const std::string failure = registration.iterate(uncertain, result.report);
+    if (!failure.empty()) throw std::runtime_error(failure);
     result.previous = problem.previous();
 
     problem.relinearize();
     const NavState::Matrix lidar_information = problem.lidarInformation();
-    result.translation_information =
+    result.report.translation_information =
         eigenvaluesOf(lidar_information.block<3, 3>(NavState::kPosition, NavState::kPosition));
-    result.rotation_information =
+    result.report.rotation_information =
         eigenvaluesOf(lidar_information.block<3, 3>(NavState::kRotation, NavState::kRotation));
 
     // The posterior of x_k is the prior of the next scan.
@@ -156,21 +157,22 @@ void Odometry::estimate(
     result.estimate.state = previous_.state;
     result.estimate.covariance = information.ldlt().solve(NavState::Matrix::Identity());
     endRestIfLeft(lidar_information);
-    judgeFit(result);
+    judgeFit(result.report);
+    return registration.path();
 }
 
-void Odometry::judgeFit(ScanResult& result)
+void Odometry::judgeFit(ScanReport& report)
 {
-    if (!result.lidar_used || !std::isfinite(result.explained)) return;
-    result.usual_fit = usual_fit_;
-    const double explained = result.explained / result.features;
+    if (!report.lidar_used || !std::isfinite(report.explained)) return;
+    report.usual_fit = usual_fit_;
+    const double explained = report.explained / report.features;
     if (usual_fit_ == 0)
     {
-        usual_fit_ = result.fit();
+        usual_fit_ = report.fit();
         usual_explained_ = explained;
     }
-    const double memory = isDoubtful(result) ? kDoubtMemory : kFitMemory;
-    usual_fit_ += memory * (result.fit() - usual_fit_);
+    const double memory = isDoubtful(report) ? kDoubtMemory : kFitMemory;
+    usual_fit_ += memory * (report.fit() - usual_fit_);
     usual_explained_ += memory * (explained - usual_explained_);
 }
 

@@ -194,7 +194,7 @@ void Pipeline::judge(const ScanResult& result)
 {
     const Time t = result.estimate.state.t;
     std::string cause;
-    if (isDoubtful(result))
+    if (isDoubtful(result.report))
     {
         cause = "pose_doubtful";
         warn(
@@ -202,16 +202,16 @@ void Pipeline::judge(const ScanResult& result)
             format(
                 "only %.0f %% of the matched points fit the map, where %.0f %% did: the pose may "
                 "be lost from here on",
-                100 * result.fit(), 100 * result.usual_fit));
+                100 * result.report.fit(), 100 * result.report.usual_fit));
     }
-    else if (!result.lidar_used && result.iterations > 0)
+    else if (!result.report.lidar_used && result.report.iterations > 0)
     {
         cause = "few_correspondences";
         warn(
             t, cause,
             format(
-                "only %d correspondences: the state follows the %s alone", result.correspondences,
-                result.with_imu ? "IMU" : "velocity"));
+                "only %d correspondences: the state follows the %s alone",
+                result.report.correspondences, result.with_imu ? "IMU" : "velocity"));
     }
     else if (!result.with_imu && withImu())
     {

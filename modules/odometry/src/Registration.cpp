@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "Stopwatch.h"
 #include "gaps.h"
@@ -57,7 +56,7 @@ bool hasLongGap(const PreintegratedImu& motion)
 Registration::Registration(
     const OdometryConfig& config, const Map& map, const Solver& solver, Executor& executor,
     const NavPrior& previous, const PreintegratedImu& motion, const Features& features,
-    SweepPath& path)
+    const SweepPath& path)
     : config_(config),
       map_(map),
       solver_(solver),
@@ -67,16 +66,16 @@ Registration::Registration(
       features_(features),
       path_(path),
       lidar_(features, config.lidar_noise, executor),
-      problem_(previous, motion, lidar_, path, config.estimation),
+      problem_(previous, motion, lidar_, path_, config.estimation),
       queries_(features.points.size())
 {
     problem_.useLidar(false);
 }
 
-void Registration::iterate(LidarFactor::PoseCovariance unexplained, ScanResult& result)
+std::string Registration::iterate(LidarFactor::PoseCovariance unexplained, ScanReport& report)
 {
     const EstimationConfig& config = config_.estimation;
-    result.balance = config.inflation;
+    report.balance = config.inflation;
     for (int i = 0; i < config.max_iterations && !map_.empty(); i++)
     {
         Stopwatch watch;
@@ -86,25 +85,27 @@ void Registration::iterate(LidarFactor::PoseCovariance unexplained, ScanResult& 
                 world[j], features_.points[j].kind,
                 (problem_.current().T_world_imu.p - world[j]).normalized()};
         map_.match(queries_, correspondences_, executor_);
-        watch.stage(result.times.match);
+        watch.stage(report.times.match);
 
-        lidar_.setCorrespondences(correspondences_, path_, unexplained, result.balance);
+        lidar_.setCorrespondences(correspondences_, path_, unexplained, report.balance);
         unexplained *= kStillPredicted;
-        result.correspondences = static_cast<int>(std::count_if(
+        report.correspondences = static_cast<int>(std::count_if(
             correspondences_.begin(), correspondences_.end(),
             [](const Correspondence& c) { return c.surface != Surface::None; }));
-        result.lidar_used = result.correspondences >= config.min_correspondences;
-        problem_.useLidar(result.lidar_used);
-        if (config.balance && i > 0) result.balance = balanceOf(result.correspondences);
-        problem_.setBalance(result.balance);
+        report.lidar_used = report.correspondences >= config.min_correspondences;
+        problem_.useLidar(report.lidar_used);
+        if (config.balance && i > 0) report.balance = balanceOf(report.correspondences);
+        problem_.setBalance(report.balance);
 
-        const SolveReport report = solver_.solve(problem_);
-        result.iterations = i + 1;
-        result.cost = report.final_cost;
-        result.converged = report.last_step < config.min_step;
-        if (result.converged && i > 0) break;
+        const SolveReport solved = solver_.solve(problem_);
+        if (!solved.failure.empty()) return solved.failure;
+        report.iterations = i + 1;
+        report.cost = solved.final_cost;
+        report.converged = solved.last_step < config.min_step;
+        if (report.converged && i > 0) break;
     }
-    result.explained = lidar_.explained(path_);
+    report.explained = lidar_.explained(path_);
+    return {};
 }
 
 double Registration::balanceOf(int matches) const
@@ -127,17 +128,10 @@ LidarFactor::PoseCovariance Registration::startAfterGap(double usual_share)
     double most = -1;
     const auto attempt = [&](const NavState& start)
     {
-        ScanResult tried;
+        ScanReport tried;
         problem_.startFrom(start);
-        try
-        {
-            iterate(covarianceOfGuess(), tried);
-        }
-        catch (const std::runtime_error&)
-        {
-            return;  // a problem that cannot be solved from there
-        }
-        if (!(tried.explained > kClearlyBetter * most)) return;
+        const std::string failure = iterate(covarianceOfGuess(), tried);
+        if (!failure.empty() || !(tried.explained > kClearlyBetter * most)) return;
         most = tried.explained;
         best = start;
     };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "taut/odometry/Odometry.h"
@@ -14,18 +15,22 @@ bool hasLongGap(const PreintegratedImu& motion);
 class Registration
 {
  public:
-    /** All references are kept. */
+    /** All references are kept but for `path`, the one that is predicted. */
     Registration(
         const OdometryConfig& config, const Map& map, const Solver& solver, Executor& executor,
         const NavPrior& previous, const PreintegratedImu& motion, const Features& features,
-        SweepPath& path);
+        const SweepPath& path);
 
     ScanProblem& problem() { return problem_; }
 
+    /** The path by the problem's estimate. */
+    const SweepPath& path() const { return path_; }
+
     /** The loop of the paper's Algorithm 1, from the problem's estimate on: undistort every point,
      * look up surfaces, solve, until nothing moves. `unexplained` is the covariance of (p, theta)
-     * that residuals may have besides their noise. */
-    void iterate(LidarFactor::PoseCovariance unexplained, ScanResult& result);
+     * that residuals may have besides their noise. Gives why the problem cannot be solved from
+     * there; empty if it can. */
+    std::string iterate(LidarFactor::PoseCovariance unexplained, ScanReport& report);
 
     /** After a long gap: begins where most features are explained, of the prediction, what the
      * velocity before the gap says, and, if these explain less than the usual share of the
@@ -44,7 +49,7 @@ class Registration
     const NavState before_;
     const PreintegratedImu& motion_;
     const Features& features_;
-    SweepPath& path_;
+    SweepPath path_;
     LidarFactor lidar_;
     ScanProblem problem_;
     std::vector<MapPoint> queries_;

@@ -54,8 +54,9 @@ StartOfMotion startOfMotion(const std::vector<ScanResult>& results)
         if (k > 0)
         {
             const Matrix3d R = poseOf(k).R;
-            const Motion& m = results[k].motion;
-            const double dt = results[k].duration;
+            const PreintegratedImu& chain = results[k].sweep.motion;
+            const Motion& m = chain.knots.back().delta;
+            const double dt = chain.duration();
             twice += single * dt - R * (m.beta * dt + m.alpha);
             single -= R * m.beta;
             t += dt;
@@ -129,8 +130,8 @@ double misfitOf(const std::vector<ScanResult>& results)
     double cost = 0, matches = 0;
     for (const ScanResult& r : results)
     {
-        cost += r.cost;
-        if (r.lidar_used) matches += r.correspondences;
+        cost += r.report.cost;
+        if (r.report.lidar_used) matches += r.report.correspondences;
     }
     // Scans that match nothing cost nothing, and say nothing.
     return matches > 0 ? cost / square(matches) : std::numeric_limits<double>::infinity();
@@ -142,8 +143,8 @@ double matchedShareOf(const std::vector<ScanResult>& results)
     double matches = 0, features = 0;
     for (std::size_t k = 1; k < results.size(); k++)  // the first has no map
     {
-        matches += results[k].correspondences;
-        features += results[k].features;
+        matches += results[k].report.correspondences;
+        features += results[k].report.features;
     }
     return features > 0 ? matches / features : 0;
 }

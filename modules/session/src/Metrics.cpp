@@ -55,12 +55,12 @@ void Metrics::add(const ScanResult& result)
 {
     if (scans_ == 0) first_ = result.estimate.state.t;
     last_ = result.estimate.state.t;
-    if (scans_ > 0 && !result.lidar_used) unmatched_++;
-    if (!result.converged) not_converged_++;
-    total_ms_ += result.times.total();
-    max_ms_ = std::max(max_ms_, result.times.total());
-    iterations_ += result.iterations;
-    correspondences_ += result.correspondences;
+    if (scans_ > 0 && !result.report.lidar_used) unmatched_++;
+    if (!result.report.converged) not_converged_++;
+    total_ms_ += result.report.times.total();
+    max_ms_ = std::max(max_ms_, result.report.times.total());
+    iterations_ += result.report.iterations;
+    correspondences_ += result.report.correspondences;
     memory_.add(residentMemory(false));
     scans_++;
 }

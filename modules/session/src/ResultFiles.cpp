@@ -70,19 +70,20 @@ void ResultFiles::writeState(const ScanResult& r)
     const NavState& x = r.estimate.state;
     states_ << formatSeconds(x.t) << ',' << x.v_world << ',' << x.bias_accel << ',' << x.bias_gyro;
     for (int i = 0; i < NavState::kSize; i++) states_ << ',' << r.estimate.covariance(i, i);
-    states_ << ',' << r.iterations << ',' << r.features << ',' << r.correspondences << ',' << r.cost
-            << ',' << r.balance << ',' << r.converged << ',' << r.lidar_used;
-    for (const double e : r.translation_information) states_ << ',' << e;
-    for (const double e : r.rotation_information) states_ << ',' << e;
+    states_ << ',' << r.report.iterations << ',' << r.report.features << ','
+            << r.report.correspondences << ',' << r.report.cost << ',' << r.report.balance << ','
+            << r.report.converged << ',' << r.report.lidar_used;
+    for (const double e : r.report.translation_information) states_ << ',' << e;
+    for (const double e : r.report.rotation_information) states_ << ',' << e;
     states_ << '\n';
 }
 
 void ResultFiles::writeTiming(const ScanResult& r)
 {
-    const StageTimes& t = r.times;
-    timing_ << formatSeconds(r.estimate.state.t) << ',' << r.scan_points << ',' << t.transform
-            << ',' << t.preintegrate << ',' << t.extract << ',' << t.match << ',' << t.solve << ','
-            << t.insert << ',' << t.total() << '\n';
+    const StageTimes& t = r.report.times;
+    timing_ << formatSeconds(r.estimate.state.t) << ',' << r.report.scan_points << ','
+            << t.transform << ',' << t.preintegrate << ',' << t.extract << ',' << t.match << ','
+            << t.solve << ',' << t.insert << ',' << t.total() << '\n';
 }
 
 void ResultFiles::close()

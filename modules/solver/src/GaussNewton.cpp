@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 IMPLEMENTS_MRPT_OBJECT(GaussNewton, taut::Solver, taut)
 
@@ -44,8 +43,10 @@ SolveReport GaussNewton::solve(LeastSquaresProblem& problem) const
         const Eigen::LLT<ProblemMatrix> llt(A);
         ProblemVector step = llt.solve(-g);
         if (llt.info() != Eigen::Success || !step.allFinite())
-            throw std::runtime_error(
-                "the normal equations are not positive definite or not finite");
+        {
+            report.failure = "the normal equations are not positive definite or not finite";
+            return report;
+        }
         bound(step, problem.maxStep());
         report.last_step = std::sqrt(std::max(0.0, step.dot(H * step)));
 

@@ -74,7 +74,10 @@ SolveReport NloptSolver::solve(LeastSquaresProblem& problem) const
     WhitenedProblem whitened{problem, Eigen::LLT<ProblemMatrix>(H)};
     // Eigen's factorisation lets NaN pass, and NLopt would search on among them.
     if (whitened.llt.info() != Eigen::Success || !H.allFinite() || !g.allFinite())
-        throw std::runtime_error("the normal equations are not positive definite or not finite");
+    {
+        report.failure = "the normal equations are not positive definite or not finite";
+        return report;
+    }
 
     nlopt::opt opt(algorithmOf(config.algorithm), static_cast<unsigned>(n));
     opt.set_min_objective(&WhitenedProblem::evaluate, &whitened);
@@ -100,9 +103,13 @@ SolveReport NloptSolver::solve(LeastSquaresProblem& problem) const
         WhitenedProblem::evaluate(z, gradient, &whitened);
         report.converged = Eigen::Map<const Eigen::VectorXd>(gradient.data(), n).norm() < 1e-3;
     }
-    if (!std::isfinite(cost)) throw std::runtime_error("the cost at NLopt's result is not finite");
-    const ProblemVector delta = whitened.step(z);
     problem.restore();
+    if (!std::isfinite(cost))
+    {
+        report.failure = "the cost at NLopt's result is not finite";
+        return report;
+    }
+    const ProblemVector delta = whitened.step(z);
     problem.retract(delta);
     report.evaluations = whitened.evaluations + 1;
     report.final_cost = cost;

@@ -3,6 +3,7 @@
 #include <mrpt/rtti/CObject.h>
 
 #include <Eigen/Core>
+#include <string>
 
 #include "taut/core/Config.h"
 
@@ -48,6 +49,9 @@ struct SolveReport
     double initial_cost = 0, final_cost = 0;
     double last_step = 0;  //!< norm of the last step whitened by the Hessian: in sigmas
     bool converged = false;
+    /** Why there is no optimum, as normal equations that are not positive definite: the estimate is
+     * where it was or where the last good step took it. Empty if there is one. */
+    std::string failure;
 };
 
 /** Plug point: minimises a problem from its current estimate, leaving the estimate at the optimum.

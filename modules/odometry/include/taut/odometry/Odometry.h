@@ -18,19 +18,9 @@ struct StageTimes
     double total() const { return transform + preintegrate + extract + match + solve + insert; }
 };
 
-/** What came of one scan. */
-struct ScanResult
+/** How a scan was matched: for reports and judgements, not for results. */
+struct ScanReport
 {
-    NavEstimate estimate;  //!< x_k after this scan
-    NavState previous;     //!< x_{k-1} as this scan moved it; x_{k-1} unchanged where it is held
-    bool with_imu = true;  //!< false: predicted by constant velocity
-    std::vector<Vector3d> points;  //!< undistorted points as inserted, world frame [m]
-    Sweep sweep;                   //!< the same points raw, with their path
-    /** Where OdometryConfig::keep_undistorted asks for it: each point of the raw scan in the body
-     * frame at its end, along the final path [m]; NaN where it was not usable. */
-    std::vector<Eigen::Vector3f> undistorted;
-    Motion motion;                //!< preintegrated, from this state back to the previous one
-    double duration = 0;          //!< [s] between both
     std::size_t scan_points = 0;  //!< raw points used, in range and time
     int features = 0, correspondences = 0, iterations = 0;
     double explained = 0;  //!< of the correspondences, by their surfaces: the sum of robust weights
@@ -46,8 +36,22 @@ struct ScanResult
     StageTimes times;
 };
 
+/** What came of one scan. */
+struct ScanResult
+{
+    NavEstimate estimate;  //!< x_k after this scan
+    NavState previous;     //!< x_{k-1} as this scan moved it; x_{k-1} unchanged where it is held
+    bool with_imu = true;  //!< false: predicted by constant velocity
+    std::vector<Vector3d> points;  //!< undistorted points as inserted, world frame [m]
+    Sweep sweep;                   //!< the same points raw, with their path
+    /** Where OdometryConfig::keep_undistorted asks for it: each point of the raw scan in the body
+     * frame at its end, along the final path [m]; NaN where it was not usable. */
+    std::vector<Eigen::Vector3f> undistorted;
+    ScanReport report;
+};
+
 /** True if the matches fit the map so much worse than usual that the pose is probably lost. */
-bool isDoubtful(const ScanResult& result);
+bool isDoubtful(const ScanReport& report);
 
 /** The paper's Algorithm 1: one state a scan, every point undistorted anew in every iteration.
  * Owns its map and everything behind the plug points. Not thread-safe; any number of them can work
@@ -74,10 +78,10 @@ class Odometry
 
  private:
     PreintegratedImu integrate(Time end, const ImuSamples* imu) const;
-    void estimate(
-        const Features& features, const PreintegratedImu& motion, SweepPath& path,
+    SweepPath estimate(
+        const Features& features, const PreintegratedImu& motion, const SweepPath& predicted,
         ScanResult& result);
-    void judgeFit(ScanResult& result);
+    void judgeFit(ScanReport& report);
     std::vector<Eigen::Vector3f> undistorted(
         const Scan& raw, Time begin, const SweepPath& path) const;
     void endRestIfLeft(const NavState::Matrix& lidar_information);
