@@ -8,6 +8,8 @@
 #include <string>
 #include <type_traits>
 
+#include "taut/core/Yaml.h"
+
 namespace taut
 {
 /** The program was called wrongly. */
@@ -32,7 +34,8 @@ inline bool parseCommandLine(TCLAP::CmdLine& cmd, int argc, char** argv)
     return cmd.parse(argc, argv);
 }
 
-/** Calls `body` and gives the exit code: what it returns (0 if nothing), 1 failed, 2 bad usage. */
+/** Calls `body` and gives the exit code: what it returns (0 if nothing), 1 failed, 2 bad usage or a
+ * configuration that cannot be used. */
 template <class Body>
 int runProgram(const std::string& name, Body body)
 {
@@ -51,6 +54,11 @@ int runProgram(const std::string& name, Body body)
     catch (const UsageError& e)
     {
         std::cerr << name << ": " << e.what() << " (see " << name << " --help)\n";
+        return 2;
+    }
+    catch (const ConfigError& e)
+    {
+        std::cerr << name << ": " << e.what() << "\n";
         return 2;
     }
     catch (const std::exception& e)

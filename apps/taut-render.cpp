@@ -47,9 +47,9 @@ void parseSize(const std::string& text, taut::OSMesaRendererConfig& config)
 /** The limits of the renderer's configuration hold here too. */
 void checkSize(const taut::OSMesaRendererConfig& config)
 {
-    mrpt::containers::yaml keys = mrpt::containers::yaml::Map();
-    keys["width"] = config.width;
-    keys["height"] = config.height;
+    taut::YamlNode keys;
+    keys.section("").set("width", std::to_string(config.width));
+    keys.set("height", std::to_string(config.height));
     taut::ConfigSection section(keys, "size");
     try
     {

@@ -2,9 +2,10 @@
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)  # libeigen3-dev 3.4.0
 # libmrpt-maps-dev, libmrpt-opengl-dev, libmrpt-tclap-dev 2.5.8
-foreach(lib core rtti containers system io serialization math poses obs maps img opengl tclap)
+foreach(lib core rtti system io serialization math poses obs maps img opengl tclap)
   find_package(mrpt-${lib} 2.5 REQUIRED)
 endforeach()
+find_package(yaml-cpp 0.7 REQUIRED)    # libyaml-cpp-dev 0.7.0
 find_package(ZLIB 1.2 REQUIRED)          # zlib1g-dev 1.2.13
 find_package(BZip2 1.0 REQUIRED)         # libbz2-dev 1.0.8: chunks of bags
 find_package(SQLite3 3.40 REQUIRED)      # libsqlite3-dev 3.40.1: bags

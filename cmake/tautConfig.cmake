@@ -2,7 +2,7 @@
 include(CMakeFindDependencyMacro)
 find_dependency(Threads)
 find_dependency(Eigen3 3.4)
-foreach(lib core rtti containers)
+foreach(lib core rtti)
   find_dependency(mrpt-${lib} 2.5)
 endforeach()
 find_dependency(octomap 1.9)

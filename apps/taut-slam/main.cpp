@@ -66,12 +66,16 @@ class Run
  public:
     explicit Run(const Options& options)
         : options_(options),
-          rig_(options.rig.empty() ? Rig{} : loadRig(options.rig)),
           progress_(options.verbosity >= 2),
           warnings_([this](const Warning& w) { print(w); })
     {
+        if (!options.rig.empty())
+        {
+            session_.rig = readTextFile(options.rig);
+            rig_ = parseRig(session_.rig, options.rig);
+        }
         session_.method_file = findMethodFile(options.config);
-        ConfigSection root(readMethodFile(session_.method_file, options.settings));
+        ConfigSection root = readMethodFile(session_.method_file, options.settings);
         session_.method = Method::read(root, rig_.imu.noise);
         session_.folder = options.output;
         session_.input = options.input;

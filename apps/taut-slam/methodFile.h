@@ -1,9 +1,9 @@
 #pragma once
 
-#include <mrpt/containers/yaml.h>
-
 #include <string>
 #include <vector>
+
+#include "taut/core/Config.h"
 
 namespace taut
 {
@@ -13,6 +13,6 @@ std::string findMethodFile(const std::string& given);
 
 /** The file with the settings "section.key=value" laid over it. A setting of `type` to another
  * class than the file's drops what the file gives for that one. Throws ConfigError. */
-mrpt::containers::yaml readMethodFile(
+ConfigSection readMethodFile(
     const std::string& path, const std::vector<std::string>& settings);
 }  // namespace taut

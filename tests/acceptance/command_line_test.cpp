@@ -104,7 +104,7 @@ TEST(TheCommandLine, SetsKeysAtAnyDepthAndOtherClasses)
     EXPECT_THAT(run.output, HasSubstr("    resolution: 0.5 "));
     EXPECT_THAT(run.output, HasSubstr("  sectors: 9 "));
     for (const char* wrong : {"features=3", "features.voxel_size", "estimation.balance.x=1"})
-        EXPECT_EQ(slam(std::string("-i a -o b --show-config -s ") + wrong).exit_code, 1) << wrong;
+        EXPECT_EQ(slam(std::string("-i a -o b --show-config -s ") + wrong).exit_code, 2) << wrong;
 }
 
 TEST(TheCommandLine, ShowsTheConfigurationAndDoesNothingElse)

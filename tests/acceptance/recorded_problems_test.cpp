@@ -1,6 +1,5 @@
 // Both solvers on the problems of recordings: the same optimum, whichever of them is chosen.
 #include <gtest/gtest.h>
-#include <mrpt/containers/yaml.h>
 
 #include <cmath>
 #include <filesystem>
@@ -20,7 +19,7 @@ constexpr int kEveryNth = 40;  // problem, for time
 
 std::shared_ptr<Solver> solverOf(const std::string& name, const std::string& settings)
 {
-    ConfigSection section(mrpt::containers::yaml::FromText(settings), "solver");
+    ConfigSection section(parseYaml(settings), "solver");
     const auto solver = createPlugin<Solver>(name);
     solver->configure(section);
     return solver;
@@ -94,7 +93,7 @@ TEST_P(RecordedProblems, HaveTheSameOptimumForBothSolvers)
     log.only_first_n = 200;
 
     registerAll();
-    ConfigSection root(mrpt::containers::yaml::FromFile(TAUT_CONFIG "/default.yaml"));
+    ConfigSection root(readYamlFile(TAUT_CONFIG "/default.yaml"));
     OdometryConfig config = OdometryConfig::read(root);
     const auto solver = std::make_shared<BothSolvers>();
     config.solver = Prototype<Solver>(solver);

@@ -48,10 +48,7 @@ const Recording& recording()
 OdometryConfig methodWith(const std::string& solver)
 {
     registerAll();
-    mrpt::containers::yaml yaml = mrpt::containers::yaml::Map();
-    yaml["solver"] = mrpt::containers::yaml::Map();
-    yaml["solver"]["type"] = solver;
-    ConfigSection root(yaml);
+    ConfigSection root(parseYaml("solver: {type: " + solver + "}"));
     return OdometryConfig::read(root);
 }
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 using namespace taut;
 using ::testing::HasSubstr;
 
@@ -10,7 +12,7 @@ namespace
 {
 ConfigSection parse(const std::string& text)
 {
-    return ConfigSection(mrpt::containers::yaml::FromText(text));
+    return ConfigSection(parseYaml(text));
 }
 
 template <class F>
@@ -84,6 +86,36 @@ TEST(Config, ListsTheChoices)
         HasSubstr("choose from: a b"));
     parse("e: b").choice<E>("e", e, {{"a", E::A}, {"b", E::B}}, "");
     EXPECT_EQ(e, E::B);
+}
+
+TEST(Config, EveryNumberReadsBackToTheSameBits)
+{
+    const Range any{0, std::numeric_limits<double>::max()};
+    for (const double v : {0.1 + 0.2, 1.0 / 3, 2e-4, 1e-310, 1.7976931348623157e308, 123456789.125})
+    {
+        double a = v, b = 0;
+        ConfigSection first;
+        first.key("a", a, any, "");
+        auto second = parse(first.effective());
+        second.key("a", b, any, "");
+        EXPECT_EQ(b, v);
+    }
+}
+
+TEST(Config, AnEmptySectionIsNothingAndAListIsNoValue)
+{
+    double v = 1;
+    auto empty = parse("s:\n");
+    empty.section("s").key("v", v, kPositive, "m");
+    EXPECT_EQ(v, 1);
+    EXPECT_THAT(
+        messageOf([&] { parse("\nv: [1, 2]").key("v", v, kPositive, "m"); }),
+        testing::AllOf(HasSubstr("line 2"), HasSubstr("'v' is a list")));
+    EXPECT_THAT(
+        messageOf([&] { parse("v: {a: 1}").key("v", v, kPositive, "m"); }), HasSubstr("section"));
+    EXPECT_THAT(
+        messageOf([&] { parse("v:").key("v", v, kPositive, "m"); }), HasSubstr("has no value"));
+    EXPECT_THAT(messageOf([&] { parse("a: 1\nx: 2").rejectUnknown(); }), HasSubstr("line 1"));
 }
 
 TEST(Config, EffectiveTextReadsBackTheSame)

@@ -43,7 +43,8 @@ TEST(Geometry, RightJacobianIsTheDerivativeOfExp)
                 3);
             EXPECT_LT((rightJacobianSO3(phi) - numeric).norm(), 1e-8);
             EXPECT_LT(
-                (rightJacobianSO3(phi) * inverseRightJacobianSO3(phi) - Matrix3d::Identity()).norm(),
+                (rightJacobianSO3(phi) * inverseRightJacobianSO3(phi) - Matrix3d::Identity())
+                    .norm(),
                 1e-12);
         }
 }

@@ -59,11 +59,11 @@ TEST(RobustKernel, ManyOutliersOfAGemanMcClureKernelPullLessThanOneGoodMatch)
 TEST(RobustKernel, ReadsItsConfiguration)
 {
     ConfigSection section(
-        mrpt::containers::yaml::FromText("{kernel: huber, kernel_scale: 1.5}"), "lidar");
+        parseYaml("{kernel: huber, kernel_scale: 1.5}"), "lidar");
     RobustKernel kernel;
     kernel.declare(section);
     EXPECT_EQ(kernel.kind, Kernel::Huber);
     EXPECT_EQ(kernel.scale, 1.5);
-    ConfigSection wrong(mrpt::containers::yaml::FromText("{kernel: gauss}"), "lidar");
+    ConfigSection wrong(parseYaml("{kernel: gauss}"), "lidar");
     EXPECT_THROW(kernel.declare(wrong), ConfigError);
 }

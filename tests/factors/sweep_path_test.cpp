@@ -110,7 +110,7 @@ TEST_P(AnyMode, EndsAtTheCurrentState)
 TEST_P(AnyMode, NameIsReadBack)
 {
     ConfigSection section(
-        mrpt::containers::yaml::FromText(std::string("undistortion: ") + nameOf(GetParam())));
+        parseYaml(std::string("undistortion: ") + nameOf(GetParam())));
     Undistortion mode = GetParam() == Undistortion::None ? Undistortion::Imu : Undistortion::None;
     declareUndistortion(section, mode);
     EXPECT_EQ(mode, GetParam());

@@ -44,7 +44,7 @@ class Extractor : public ::testing::TestWithParam<const char*>
 
     Features extract(const Scan& scan, const std::string& yaml = "{}")
     {
-        ConfigSection section(mrpt::containers::yaml::FromText(yaml), "features");
+        ConfigSection section(parseYaml(yaml), "features");
         auto extractor = createPlugin<FeatureExtractor>(GetParam());
         extractor->configure(section);
         section.rejectUnknown();

@@ -29,7 +29,7 @@ class AnyMap : public ::testing::TestWithParam<const char*>
 
     std::shared_ptr<Map> make(const std::string& yaml = "{}") const
     {
-        ConfigSection section(mrpt::containers::yaml::FromText(yaml), "map");
+        ConfigSection section(parseYaml(yaml), "map");
         auto created = createPlugin<Map>(GetParam());
         created->configure(section);
         section.rejectUnknown();

@@ -84,7 +84,7 @@ Outcome run(
     bool keep_undistorted = false, const std::string& on_motion = "start")
 {
     registerAll();
-    ConfigSection root(mrpt::containers::yaml::FromText(
+    ConfigSection root(parseYaml(
         "initialization: {rest_duration: 1.2, min_rest: 0.5, on_motion: " + on_motion +
         "}\n"
         "lidar: {max_range: 30}\n"

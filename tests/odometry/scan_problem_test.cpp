@@ -242,7 +242,7 @@ TEST_P(AnyScanProblem, AllSolversReachTheSameOptimum)
     registerAll();
     const auto optimumBy = [&](const std::string& name, const std::string& yaml)
     {
-        ConfigSection section(mrpt::containers::yaml::FromText(yaml));
+        ConfigSection section(parseYaml(yaml));
         const auto solver = createPlugin<Solver>(name);
         solver->configure(section);
         Instance own{std::get<0>(GetParam()), std::get<1>(GetParam())};

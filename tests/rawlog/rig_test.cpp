@@ -37,7 +37,7 @@ TEST(Rig, TheExampleIsReadWhole)
     ASSERT_TRUE(rig.imu.T_vehicle_imu);
     EXPECT_EQ(rig.imu.T_vehicle_imu->p.z(), 0.05);
     ASSERT_TRUE(rig.imu.noise);
-    EXPECT_EQ(rig.imu.noise->accel, 2e-2);
+    EXPECT_EQ(rig.imu.noise->accel, 2e-3);
 }
 
 TEST(Rig, WhatIsNotGivenIsNotOverridden)

@@ -288,7 +288,7 @@ TEST_F(OSMesaPicture, TheCaptionIsInTheStripBelowWhateverItsLength)
 
 TEST(OSMesaRenderer, ReadsItsConfiguration)
 {
-    ConfigSection section(mrpt::containers::yaml::FromText(
+    ConfigSection section(parseYaml(
         "width: 320\nheight: 240\nsupersampling: 1\nmax_points: 5000\ncut_ceiling: false"));
     OSMesaRenderer renderer;
     renderer.configure(section);
@@ -303,7 +303,7 @@ TEST(OSMesaRenderer, ReadsItsConfiguration)
 TEST(OSMesaRenderer, RefusesPicturesThatMesaCannotDraw)
 {
     OSMesaRenderer renderer;
-    ConfigSection section(mrpt::containers::yaml::FromText("width: 9000"));
+    ConfigSection section(parseYaml("width: 9000"));
     EXPECT_THAT(
         [&] { renderer.configure(section); }, ThrowsMessage<ConfigError>(HasSubstr("9000")));
     EXPECT_EQ(renderer.config().width, 1600);

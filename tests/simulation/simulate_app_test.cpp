@@ -195,7 +195,7 @@ TEST_F(SimulateApp, SaysWhatIsWrong)
     EXPECT_EQ(simulate("--set imu.rat=3").exit_code, 2);
     EXPECT_THAT(simulate("--set imu.rat=3").output, HasSubstr("'imu.rat'"));
     EXPECT_EQ(simulate("--packets --set lidar.type=OS1-64").exit_code, 2);
-    EXPECT_EQ(run("-c /nowhere.yaml -o /tmp/x.rawlog").exit_code, 1);
+    EXPECT_EQ(run("-c /nowhere.yaml -o /tmp/x.rawlog").exit_code, 2);
     EXPECT_EQ(
         run("-c " TAUT_SCENARIOS "/hall_violent.yaml --duration 1 -o /nowhere/x.rawlog").exit_code,
         1);

@@ -16,7 +16,7 @@ namespace
 std::shared_ptr<Solver> makeSolver(const std::string& name, const std::string& yaml)
 {
     registerSolvers();
-    ConfigSection section(mrpt::containers::yaml::FromText(yaml), "solver");
+    ConfigSection section(parseYaml(yaml), "solver");
     auto solver = createPlugin<Solver>(name);
     solver->configure(section);
     section.rejectUnknown();

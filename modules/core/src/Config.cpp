@@ -1,5 +1,6 @@
 #include "taut/core/Config.h"
 
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -7,36 +8,39 @@ namespace taut
 {
 namespace
 {
+/** The shortest text that reads back to the same bits. */
 std::string numberText(double v)
 {
-    std::ostringstream s;
-    s.precision(12);
-    s << v;
-    return s.str();
+    char buffer[32];
+    const auto end = std::to_chars(buffer, buffer + sizeof buffer, v, std::chars_format::general);
+    return {buffer, end.ptr};
 }
 
-void checkRange(const std::string& path, double value, const Range& range)
+template <class Number>
+std::optional<Number> numberIn(const std::string& text)
 {
-    if (std::isfinite(value) && value >= range.min && value <= range.max) return;
-    std::ostringstream s;
-    s << "configuration key '" << path << "' is " << value << ", outside of ";
-    if (range.min == kPositive.min && range.max == kPositive.max)
-        s << "the positive numbers";
-    else if (range.max == kAnyNumber.max)
-        s << "the numbers from " << range.min << " up";
-    else
-        s << "[" << range.min << ", " << range.max << "]";
-    throw ConfigError(s.str());
+    std::istringstream s(text);
+    s.imbue(std::locale::classic());
+    Number v{};
+    if (!(s >> v) || !(s >> std::ws).eof()) return std::nullopt;
+    return v;
 }
 }  // namespace
 
-ConfigSection::ConfigSection(mrpt::containers::yaml node, std::string path)
-    : node_(std::move(node)), path_(std::move(path))
+ConfigSection::ConfigSection(YamlNode node, std::string path, std::string file)
+    : node_(std::move(node)), path_(std::move(path)), file_(std::move(file))
 {
-    if (!node_.isNullNode() && !node_.isMap())
-        throw ConfigError(
-            path_.empty() ? "the configuration is not a map of keys and values"
-                          : "configuration section '" + path_ + "' is not a map of keys");
+    if (node_.isNull() || node_.isMap()) return;
+    throw ConfigError(
+        lineOf(node_.line) + (path_.empty()
+                                  ? "the configuration is not a map of keys and values"
+                                  : "configuration section '" + path_ + "' is not a map of keys"));
+}
+
+std::string ConfigSection::lineOf(int line) const
+{
+    if (line == 0) return "";
+    return (file_.empty() ? "line " : file_ + ":") + std::to_string(line) + ": ";
 }
 
 std::string ConfigSection::pathOf(const std::string& name) const
@@ -44,9 +48,36 @@ std::string ConfigSection::pathOf(const std::string& name) const
     return path_.empty() ? name : path_ + "." + name;
 }
 
-bool ConfigSection::has(const std::string& name) const
+std::string ConfigSection::keyAt(const std::string& name) const
 {
-    return node_.isMap() && node_.has(name);
+    const YamlNode* value = node_.find(name);
+    return lineOf(value != nullptr ? value->line : 0) + "configuration key '" + pathOf(name) + "'";
+}
+
+std::optional<std::string> ConfigSection::textOf(const std::string& name) const
+{
+    const YamlNode* value = node_.find(name);
+    if (value == nullptr) return std::nullopt;
+    if (value->isNull()) throw ConfigError(keyAt(name) + " has no value");
+    if (value->kind != YamlNode::Kind::Scalar)
+        throw ConfigError(
+            keyAt(name) + " is a " + (value->isMap() ? "section" : "list") +
+            "; a single value was expected");
+    return value->scalar;
+}
+
+void ConfigSection::checkRange(const std::string& name, double value, const Range& range) const
+{
+    if (std::isfinite(value) && value >= range.min && value <= range.max) return;
+    std::ostringstream s;
+    s << keyAt(name) << " is " << value << ", outside of ";
+    if (range.min == kPositive.min && range.max == kPositive.max)
+        s << "the positive numbers";
+    else if (range.max == kAnyNumber.max)
+        s << "the numbers from " << range.min << " up";
+    else
+        s << "[" << range.min << ", " << range.max << "]";
+    throw ConfigError(s.str());
 }
 
 void ConfigSection::record(
@@ -61,54 +92,42 @@ void ConfigSection::record(
 
 void ConfigSection::key(const std::string& name, double& value, Range range, const std::string& doc)
 {
-    if (has(name))
+    if (const auto text = textOf(name))
     {
-        const auto text = node_[name].as<std::string>();
-        std::istringstream s(text);
-        s.imbue(std::locale::classic());
-        double v = 0;
-        if (!(s >> v) || !(s >> std::ws).eof())
-            throw ConfigError(
-                "configuration key '" + pathOf(name) + "' is not a number: '" + text + "'");
-        value = v;
+        const auto number = numberIn<double>(*text);
+        if (!number) throw ConfigError(keyAt(name) + " is not a number: '" + *text + "'");
+        value = *number;
     }
-    checkRange(pathOf(name), value, range);
+    checkRange(name, value, range);
     record(name, numberText(value), doc);
 }
 
 void ConfigSection::key(const std::string& name, int& value, Range range, const std::string& doc)
 {
-    if (has(name))
+    if (const auto text = textOf(name))
     {
-        const auto text = node_[name].as<std::string>();
-        std::istringstream s(text);
-        int v = 0;
-        if (!(s >> v) || !(s >> std::ws).eof())
-            throw ConfigError(
-                "configuration key '" + pathOf(name) + "' is not a whole number: '" + text + "'");
-        value = v;
+        const auto number = numberIn<int>(*text);
+        if (!number) throw ConfigError(keyAt(name) + " is not a whole number: '" + *text + "'");
+        value = *number;
     }
-    checkRange(pathOf(name), value, range);
+    checkRange(name, value, range);
     record(name, std::to_string(value), doc);
 }
 
 void ConfigSection::key(const std::string& name, bool& value, const std::string& doc)
 {
-    if (has(name))
+    if (const auto text = textOf(name))
     {
-        const auto text = node_[name].as<std::string>();
-        if (text != "true" && text != "false")
-            throw ConfigError(
-                "configuration key '" + pathOf(name) + "' is neither true nor false: '" + text +
-                "'");
-        value = text == "true";
+        if (*text != "true" && *text != "false")
+            throw ConfigError(keyAt(name) + " is neither true nor false: '" + *text + "'");
+        value = *text == "true";
     }
     record(name, value ? "true" : "false", doc);
 }
 
 void ConfigSection::key(const std::string& name, std::string& value, const std::string& doc)
 {
-    if (has(name)) value = node_[name].as<std::string>();
+    if (const auto text = textOf(name)) value = *text;
     std::string quoted = "'";
     for (const char c : value) quoted += c == '\'' ? std::string("''") : std::string(1, c);
     record(name, quoted + "'", doc);
@@ -120,26 +139,35 @@ ConfigSection& ConfigSection::section(const std::string& name)
         if (e.child && e.name == name) return *e.child;
     Entry e;
     e.name = name;
-    mrpt::containers::yaml child;
-    if (has(name)) child = node_[name];
-    e.child = std::make_unique<ConfigSection>(child, pathOf(name));
+    const YamlNode* child = node_.find(name);
+    e.child = std::make_unique<ConfigSection>(
+        child != nullptr ? *child : YamlNode(), pathOf(name), file_);
     entries_.push_back(std::move(e));
     return *entries_.back().child;
 }
 
+void ConfigSection::lay(const std::string& name, double value)
+{
+    node_.section("").set(name, numberText(value));
+}
+
+void ConfigSection::lay(const std::string& name, bool value)
+{
+    node_.section("").set(name, value ? "true" : "false");
+}
+
 void ConfigSection::rejectUnknown() const
 {
-    if (node_.isMap())
-        for (const auto& [k, v] : node_.asMap())
-        {
-            const auto name = k.as<std::string>();
-            bool known = false;
-            for (const auto& e : entries_) known = known || e.name == name;
-            if (known) continue;
-            std::string message = "unknown configuration key '" + pathOf(name) + "'; known here:";
-            for (const auto& e : entries_) message += " " + e.name;
-            throw ConfigError(message);
-        }
+    for (const YamlNode::Entry& given : node_.map)
+    {
+        bool known = false;
+        for (const auto& e : entries_) known = known || e.name == given.key;
+        if (known) continue;
+        std::string message = lineOf(given.line) + "unknown configuration key '" +
+                              pathOf(given.key) + "'; known here:";
+        for (const auto& e : entries_) message += " " + e.name;
+        throw ConfigError(message);
+    }
     for (const auto& e : entries_)
         if (e.child) e.child->rejectUnknown();
 }
@@ -171,8 +199,7 @@ std::string ConfigSection::effective() const
 void ConfigSection::throwUnknownChoice(
     const std::string& name, const std::string& text, const std::vector<std::string>& known) const
 {
-    std::string message =
-        "configuration key '" + pathOf(name) + "' is '" + text + "'; choose from:";
+    std::string message = keyAt(name) + " is '" + text + "'; choose from:";
     for (const auto& k : known) message += " " + k;
     throw ConfigError(message);
 }

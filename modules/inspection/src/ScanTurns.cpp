@@ -15,7 +15,7 @@ constexpr char kMethod[] = "features: {voxel_size: 0.3, min_points: 500, max_poi
 
 OdometryConfig methodFor(const GyroHint* hint)
 {
-    ConfigSection root(mrpt::containers::yaml::FromText(kMethod));
+    ConfigSection root(parseYaml(kMethod));
     OdometryConfig method = OdometryConfig::read(root);
     if (hint)
     {

@@ -4,13 +4,17 @@ namespace taut
 {
 Method Method::read(ConfigSection& root, const std::optional<ImuNoise>& noise_of_rig)
 {
-    Method m;
-    m.odometry = OdometryConfig::read(root);
     if (noise_of_rig)
     {
-        m.odometry.imu_noise = *noise_of_rig;
-        m.odometry.imu_noise_from_rest = false;
+        ConfigSection& imu = root.section("imu");
+        imu.lay("gyro_noise", noise_of_rig->gyro);
+        imu.lay("accel_noise", noise_of_rig->accel);
+        imu.lay("gyro_bias_walk", noise_of_rig->gyro_bias_walk);
+        imu.lay("accel_bias_walk", noise_of_rig->accel_bias_walk);
+        imu.lay("noise_from_rest", false);
     }
+    Method m;
+    m.odometry = OdometryConfig::read(root);
     ConfigSection& output = root.section("output");
     output.key("refined", m.refined, "write each pose as the next scan leaves it, one scan late");
     output.key(

@@ -37,6 +37,11 @@ Session::Session(const SessionConfig& config, WarningLog& warnings, EventSink ev
           config.method.odometry, executor_, warnings.sink(), [this](const Event& e) { take(e); })
 {
     writeText(fs::path(config_.folder) / "config.yaml", config_.method.effective);
+    const fs::path rig = fs::path(config_.folder) / "rig.yaml";
+    if (config_.rig.empty())
+        fs::remove(rig);  // of the run before
+    else
+        writeText(rig, config_.rig);
 }
 
 Session::~Session() = default;

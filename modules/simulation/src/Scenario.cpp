@@ -1,45 +1,34 @@
 #include "taut/simulation/Scenario.h"
 
-#include <fstream>
-#include <iterator>
-
 namespace taut::simulation
 {
 namespace
 {
-using mrpt::containers::yaml;
-
-void put(yaml& root, const std::string& setting)
+void put(YamlNode& root, const std::string& setting)
 {
-    const auto equals = setting.find('=');
-    if (equals == std::string::npos || equals == 0)
+    const auto equal = setting.find('=');
+    if (equal == std::string::npos || equal == 0)
         throw ConfigError("setting '" + setting + "' is not of the form key=value");
-    std::string name = setting.substr(0, equals);
-    // Nest the value in its sections, as YAML text, and merge it from the top down.
-    yaml::node_t* node = &root.node();
-    for (std::size_t dot = name.find('.');; dot = name.find('.'))
+    const auto dot = setting.rfind('.', equal);
+    const bool nested = dot != std::string::npos;
+    const std::size_t begin = nested ? dot + 1 : 0;
+    try
     {
-        if (node->isNullNode()) node->d.emplace<yaml::map_t>();
-        if (!node->isMap())
-            throw ConfigError("setting '" + setting + "': a part of its key is not a section");
-        yaml::node_t key;
-        key.d.emplace<yaml::scalar_t>(name.substr(0, dot));
-        node = &node->asMap()[key];
-        if (dot == std::string::npos) break;
-        name = name.substr(dot + 1);
+        root.section(nested ? setting.substr(0, dot) : "")
+            .set(setting.substr(begin, equal - begin), setting.substr(equal + 1));
     }
-    node->d.emplace<yaml::scalar_t>(setting.substr(equals + 1));
+    catch (const ConfigError& e)
+    {
+        throw ConfigError("setting '" + setting + "': " + e.what());
+    }
 }
 }  // namespace
 
 ConfigSection loadScenarioFile(const std::string& path, const std::vector<std::string>& settings)
 {
-    std::ifstream file(path);
-    if (!file) throw std::runtime_error("cannot read the scenario '" + path + "'");
-    const std::string text((std::istreambuf_iterator<char>(file)), {});
-    yaml root = yaml::FromText(text);
-    for (const auto& setting : settings) put(root, setting);
-    return ConfigSection(root);
+    YamlNode root = readYamlFile(path);
+    for (const std::string& setting : settings) put(root, setting);
+    return ConfigSection(root, "", path);
 }
 
 Scenario readScenario(ConfigSection& section)

@@ -1,7 +1,5 @@
 #include "BagFolder.h"
 
-#include <mrpt/containers/yaml.h>
-
 #include <algorithm>
 #include <map>
 #include <set>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "BagReader.h"
+#include "taut/core/Yaml.h"
 
 namespace taut::bag
 {
@@ -19,25 +18,27 @@ namespace
 std::vector<fs::path> partsOfMetadata(const fs::path& folder)
 {
     std::vector<fs::path> parts;
+    std::string cause;
     try
     {
-        const auto yaml = mrpt::containers::yaml::FromFile((folder / "metadata.yaml").string());
-        const auto list = yaml["rosbag2_bagfile_information"]["relative_file_paths"];
-        for (const auto& part : list.asSequence())
+        const YamlNode yaml = readYamlFile((folder / "metadata.yaml").string());
+        const YamlNode* bag = yaml.find("rosbag2_bagfile_information");
+        const YamlNode* list = bag != nullptr ? bag->find("relative_file_paths") : nullptr;
+        for (const YamlNode& part : list != nullptr ? list->list : std::vector<YamlNode>())
         {
-            const fs::path path = part.as<std::string>();  // old recorders put the folder before it
+            const fs::path path = part.scalar;  // old recorders put the folder before it
             parts.push_back(folder / (fs::exists(folder / path) ? path : path.filename()));
         }
     }
-    catch (const std::exception&)
+    catch (const ConfigError& e)
     {
-        parts.clear();
+        cause = std::string(" (") + e.what() + ")";
     }
     if (parts.empty())
         throw std::runtime_error(
-            (folder / "metadata.yaml").string() +
-            " does not list the files of a bag; 'ros2 bag reindex' writes it anew, and without it "
-            "the files are read in the order of their numbers");
+            (folder / "metadata.yaml").string() + " does not list the files of a bag" + cause +
+            "; 'ros2 bag reindex' writes it anew, and without it the files are read in the order "
+            "of their numbers");
     return parts;
 }
 

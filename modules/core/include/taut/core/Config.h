@@ -1,22 +1,15 @@
 #pragma once
 
-#include <mrpt/containers/yaml.h>
-
 #include <map>
 #include <memory>
-#include <set>
-#include <stdexcept>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "taut/core/Yaml.h"
+
 namespace taut
 {
-/** A configuration that cannot be used; what() names the key. */
-struct ConfigError : std::runtime_error
-{
-    using std::runtime_error::runtime_error;
-};
-
 /** Smallest and largest value allowed, both included. */
 struct Range
 {
@@ -35,8 +28,9 @@ inline constexpr Range kPositive{1e-300, 1e300};
 class ConfigSection
 {
  public:
-    /** `node` is a map or null (all defaults); `path` names the section in messages. */
-    explicit ConfigSection(mrpt::containers::yaml node = {}, std::string path = "");
+    /** `node` is a map or null (all defaults); `path` names the section in messages, `file` where
+     * it stands. */
+    explicit ConfigSection(YamlNode node = {}, std::string path = "", std::string file = "");
 
     void key(const std::string& name, double& value, Range range, const std::string& doc);
     void key(const std::string& name, int& value, Range range, const std::string& doc);
@@ -67,6 +61,10 @@ class ConfigSection
     /** A nested section; created empty where it is not given. The reference stays valid. */
     ConfigSection& section(const std::string& name);
 
+    /** Lays a value over what the file gives, before the key is declared. */
+    void lay(const std::string& name, double value);
+    void lay(const std::string& name, bool value);
+
     /** Throws ConfigError naming the first key, here or below, that was given but never declared.
      */
     void rejectUnknown() const;
@@ -83,16 +81,19 @@ class ConfigSection
         std::unique_ptr<ConfigSection> child;  // null for a plain key
     };
 
-    bool has(const std::string& name) const;
+    std::optional<std::string> textOf(const std::string& name) const;
     std::string pathOf(const std::string& name) const;
+    std::string keyAt(const std::string& name) const;
+    std::string lineOf(int line) const;
+    void checkRange(const std::string& name, double value, const Range& range) const;
     void record(const std::string& name, const std::string& value, const std::string& doc);
     void print(std::string& out, int indent) const;
     [[noreturn]] void throwUnknownChoice(
         const std::string& name, const std::string& text,
         const std::vector<std::string>& known) const;
 
-    mrpt::containers::yaml node_;
-    std::string path_;
+    YamlNode node_;
+    std::string path_, file_;
     std::vector<Entry> entries_;
 };
 }  // namespace taut

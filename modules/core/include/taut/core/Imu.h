@@ -20,12 +20,15 @@ struct ImuSample
 
 using ImuSamples = std::vector<ImuSample>;  //!< strictly increasing in time
 
-/** Continuous-time noise of an IMU (paper, equation 2). */
+/** Continuous-time noise of an IMU (paper, equation 2). The white noise is that of a good IMU, to
+ * be raised by what is seen at rest. What a sensor does wrong besides is left to biases that may
+ * move.
+ */
 struct ImuNoise
 {
-    double gyro = 2e-3;             //!< white noise density [rad/s/sqrt(Hz)]
-    double accel = 2e-2;            //!< white noise density [m/s^2/sqrt(Hz)]
-    double gyro_bias_walk = 1e-4;   //!< [rad/s^2/sqrt(Hz)]
-    double accel_bias_walk = 1e-3;  //!< [m/s^3/sqrt(Hz)]
+    double gyro = 2e-4;             //!< white noise density [rad/s/sqrt(Hz)]
+    double accel = 2e-3;            //!< white noise density [m/s^2/sqrt(Hz)]
+    double gyro_bias_walk = 5e-4;   //!< [rad/s^2/sqrt(Hz)]
+    double accel_bias_walk = 5e-3;  //!< [m/s^3/sqrt(Hz)]
 };
 }  // namespace taut

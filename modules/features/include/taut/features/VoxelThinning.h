@@ -21,7 +21,7 @@ class VoxelThinning : public FeatureExtractor
     {
         double voxel_size = 0.3;  //!< edge of a voxel to begin with [m]
         int min_points = 800;     //!< fewer kept: thin less
-        int max_points = 5000;    //!< more kept: thin more
+        int max_points = 2000;    //!< more kept: thin more
     };
 
     VoxelThinning() = default;

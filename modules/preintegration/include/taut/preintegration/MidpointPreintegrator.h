@@ -16,8 +16,8 @@ struct MidpointConfig
     double gap_time = 1.0;   //!< [s]
     /** Errors that grow with the motion (scale factor, misalignment, samples too far apart),
      * correlated over a sweep: one standard deviation as a share of the measured value. */
-    double gyro_scale_error = 0.002;
-    double accel_scale_error = 0.002;
+    double gyro_scale_error = 0.005;
+    double accel_scale_error = 0.005;
 };
 
 /** Backward mid-point preintegration of IMU samples (paper, equation 8). The samples are

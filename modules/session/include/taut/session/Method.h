@@ -18,8 +18,8 @@ struct Method
     bool refined = true;    //!< write poses and points as the next scan leaves them, one scan late
     std::string effective;  //!< YAML of everything as it took effect
 
-    /** Reads all sections. A rig's noise of the IMU goes before the file's. Throws ConfigError,
-     * also on a key that is unknown. */
+    /** Reads all sections. A rig's noise of the IMU goes before the file's, and before what is seen
+     * at rest; `effective` shows it. Throws ConfigError, also on a key that is unknown. */
     static Method read(ConfigSection& root, const std::optional<ImuNoise>& noise_of_rig);
 };
 }  // namespace taut

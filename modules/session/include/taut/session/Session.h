@@ -19,6 +19,7 @@ struct SessionConfig
     std::string folder;       //!< of the results; has to be there
     std::string input;        //!< file of the measurements: named and hashed in metrics.json
     std::string method_file;  //!< named in metrics.json
+    std::string rig;          //!< text of the rig file; empty: there is none
     int threads = 1;
     bool pictures = true;
 };

@@ -22,7 +22,7 @@ struct ImuConfig
 {
     ImuPreset type = ImuPreset::Industrial;
     double rate = 200;      //!< [Hz]
-    ImuNoise noise;         //!< white noise densities and random walks of the biases
+    ImuNoise noise{2e-3, 2e-2, 1e-4, 1e-3};         //!< white noise densities and random walks of the biases
     double gyro_bias = 0;   //!< turn-on bias, standard deviation of each axis [rad/s]
     double accel_bias = 0;  //!< [m/s^2]
     double gyro_scale = 0;  //!< scale error, standard deviation of each axis
