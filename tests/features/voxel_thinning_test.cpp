@@ -27,6 +27,7 @@ TEST(VoxelThinning, KeepsOnePointAVoxel)
     const Scan scan = SpinningLidar{}.scan(Scene{});
     VoxelThinning::Config config;
     config.min_points = 0;
+    config.max_points = 5000;
     const Features features = VoxelThinning(config).extract(scan, {});
 
     std::vector<std::uint64_t> of_points, of_features;

@@ -51,7 +51,8 @@ struct Result
 };
 
 Result inspect(
-    const ImuSamples& samples, std::optional<bool> degrees = {}, const ImuNoise& expected = {})
+    const ImuSamples& samples, std::optional<bool> degrees = {},
+    const ImuNoise& expected = kOrdinaryNoise)
 {
     ImuInspector inspector;
     for (const ImuSample& s : samples) inspector.add(s);
@@ -183,7 +184,7 @@ TEST(AnImu, ThatIsNoisyIsHeldAgainstWhatIsExpected)
     MadeUpImu imu;
     imu.gyro_noise = 3e-3;
     EXPECT_THAT(inspect(imu.samples()).kinds, IsEmpty());
-    ImuNoise rig;
+    ImuNoise rig = kOrdinaryNoise;
     rig.gyro = 1e-3;
     const Result r = inspect(imu.samples(), {}, rig);
     ASSERT_THAT(r.kinds, ElementsAre("gyro_noise"));

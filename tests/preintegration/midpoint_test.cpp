@@ -22,6 +22,7 @@ PreintegrationRequest request(
     r.end = end;
     r.samples = &samples;
     r.previous = previous;
+    r.noise = {2e-3, 2e-2, 1e-4, 1e-3};
     return r;
 }
 

@@ -146,14 +146,14 @@ ConfigSection& ConfigSection::section(const std::string& name)
     return *entries_.back().child;
 }
 
-void ConfigSection::lay(const std::string& name, double value)
+void ConfigSection::lay(const std::string& section, const std::string& name, double value)
 {
-    node_.section("").set(name, numberText(value));
+    node_.section(section).set(name, numberText(value));
 }
 
-void ConfigSection::lay(const std::string& name, bool value)
+void ConfigSection::lay(const std::string& section, const std::string& name, bool value)
 {
-    node_.section("").set(name, value ? "true" : "false");
+    node_.section(section).set(name, value ? "true" : "false");
 }
 
 void ConfigSection::rejectUnknown() const

@@ -168,7 +168,7 @@ class Inspector
         append(warnings_.findings(result_.log, own_units));
         if (result_.lidar) append(lidar_.findings(*result_.lidar));
         if (result_.imu)
-            append(imu_.findings(*result_.imu, config_.log.rig.imu.noise.value_or(ImuNoise{})));
+            append(imu_.findings(*result_.imu, config_.log.rig.imu.noise.value_or(kOrdinaryNoise)));
         addCoverage();
         if (result_.rotation) append(findingsOf(*result_.rotation));
         std::stable_sort(

@@ -6,12 +6,11 @@ Method Method::read(ConfigSection& root, const std::optional<ImuNoise>& noise_of
 {
     if (noise_of_rig)
     {
-        ConfigSection& imu = root.section("imu");
-        imu.lay("gyro_noise", noise_of_rig->gyro);
-        imu.lay("accel_noise", noise_of_rig->accel);
-        imu.lay("gyro_bias_walk", noise_of_rig->gyro_bias_walk);
-        imu.lay("accel_bias_walk", noise_of_rig->accel_bias_walk);
-        imu.lay("noise_from_rest", false);
+        root.lay("imu", "gyro_noise", noise_of_rig->gyro);
+        root.lay("imu", "accel_noise", noise_of_rig->accel);
+        root.lay("imu", "gyro_bias_walk", noise_of_rig->gyro_bias_walk);
+        root.lay("imu", "accel_bias_walk", noise_of_rig->accel_bias_walk);
+        root.lay("imu", "noise_from_rest", false);
     }
     Method m;
     m.odometry = OdometryConfig::read(root);

@@ -61,9 +61,9 @@ class ConfigSection
     /** A nested section; created empty where it is not given. The reference stays valid. */
     ConfigSection& section(const std::string& name);
 
-    /** Lays a value over what the file gives, before the key is declared. */
-    void lay(const std::string& name, double value);
-    void lay(const std::string& name, bool value);
+    /** Lays a value of a section over what the file gives, before that section is asked for. */
+    void lay(const std::string& section, const std::string& name, double value);
+    void lay(const std::string& section, const std::string& name, bool value);
 
     /** Throws ConfigError naming the first key, here or below, that was given but never declared.
      */

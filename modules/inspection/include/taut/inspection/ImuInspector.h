@@ -11,6 +11,10 @@
 
 namespace taut
 {
+/** Of a common MEMS IMU: the estimation takes the noise that it sees at rest, a finding is worth
+ * only one that is out of the ordinary. */
+inline constexpr ImuNoise kOrdinaryNoise{2e-3, 2e-2, 1e-4, 1e-3};
+
 /** A unit as a recording seems to have it. */
 struct Unit
 {
