@@ -13,6 +13,5 @@ std::string findMethodFile(const std::string& given);
 
 /** The file with the settings "section.key=value" laid over it. A setting of `type` to another
  * class than the file's drops what the file gives for that one. Throws ConfigError. */
-ConfigSection readMethodFile(
-    const std::string& path, const std::vector<std::string>& settings);
+ConfigSection readMethodFile(const std::string& path, const std::vector<std::string>& settings);
 }  // namespace taut

@@ -58,8 +58,7 @@ TEST(RobustKernel, ManyOutliersOfAGemanMcClureKernelPullLessThanOneGoodMatch)
 
 TEST(RobustKernel, ReadsItsConfiguration)
 {
-    ConfigSection section(
-        parseYaml("{kernel: huber, kernel_scale: 1.5}"), "lidar");
+    ConfigSection section(parseYaml("{kernel: huber, kernel_scale: 1.5}"), "lidar");
     RobustKernel kernel;
     kernel.declare(section);
     EXPECT_EQ(kernel.kind, Kernel::Huber);

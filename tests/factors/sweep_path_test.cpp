@@ -109,8 +109,7 @@ TEST_P(AnyMode, EndsAtTheCurrentState)
 
 TEST_P(AnyMode, NameIsReadBack)
 {
-    ConfigSection section(
-        parseYaml(std::string("undistortion: ") + nameOf(GetParam())));
+    ConfigSection section(parseYaml(std::string("undistortion: ") + nameOf(GetParam())));
     Undistortion mode = GetParam() == Undistortion::None ? Undistortion::Imu : Undistortion::None;
     declareUndistortion(section, mode);
     EXPECT_EQ(mode, GetParam());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+
 #include "taut/core/format.h"
 
 namespace taut

@@ -1,6 +1,7 @@
 #include "taut/inspection/InspectionReport.h"
 
 #include <nlohmann/json.hpp>
+
 #include "taut/core/format.h"
 
 namespace taut

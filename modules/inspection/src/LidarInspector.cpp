@@ -1,6 +1,7 @@
 #include "taut/inspection/LidarInspector.h"
 
 #include <algorithm>
+
 #include "taut/core/format.h"
 
 namespace taut

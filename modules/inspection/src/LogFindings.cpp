@@ -1,4 +1,5 @@
 #include "LogFindings.h"
+
 #include "taut/core/format.h"
 
 namespace taut

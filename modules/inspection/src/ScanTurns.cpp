@@ -54,7 +54,8 @@ LidarTurns matchScans(
         const Matrix3d& R = scan.T_imu_lidar.R;
         if (!path.empty()) path.back().R_world_lidar = result.previous.T_world_imu.R * R;
         path.push_back(
-            {result.estimate.state.t, result.estimate.state.T_world_imu.R * R, result.report.lidar_used});
+            {result.estimate.state.t, result.estimate.state.T_world_imu.R * R,
+             result.report.lidar_used});
     };
     Pipeline pipeline(method, executor, {}, collect);
     for (std::size_t i = 0; i < scans.size(); i++)

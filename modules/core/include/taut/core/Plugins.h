@@ -53,8 +53,8 @@ class Prototype
     /** A copy of its own, as configured. */
     std::unique_ptr<Interface> create() const
     {
-        std::unique_ptr<mrpt::rtti::CObject> copy(object_->clone());
-        return std::unique_ptr<Interface>(&dynamic_cast<Interface&>(*copy.release()));
+        // A clone is of the class of its original, so this cast cannot fail.
+        return std::unique_ptr<Interface>(dynamic_cast<Interface*>(object_->clone()));
     }
 
  private:

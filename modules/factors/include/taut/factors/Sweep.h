@@ -19,8 +19,6 @@ struct Sweep
     NavState begin;  //!< the state at the end of the sweep before, as this sweep left it
     NavState end;    //!< the state at the end of this sweep, as this sweep left it
 
-    bool empty() const { return motion.knots.empty(); }
-
     /** The points in the world frame [m] along the path between two end states. Same order as
      * scan.points. */
     std::vector<Vector3d> undistorted(const NavState& from, const NavState& to) const;

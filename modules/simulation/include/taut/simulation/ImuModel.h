@@ -21,11 +21,12 @@ enum class ImuPreset
 struct ImuConfig
 {
     ImuPreset type = ImuPreset::Industrial;
-    double rate = 200;      //!< [Hz]
-    ImuNoise noise{2e-3, 2e-2, 1e-4, 1e-3};         //!< white noise densities and random walks of the biases
-    double gyro_bias = 0;   //!< turn-on bias, standard deviation of each axis [rad/s]
-    double accel_bias = 0;  //!< [m/s^2]
-    double gyro_scale = 0;  //!< scale error, standard deviation of each axis
+    double rate = 200;  //!< [Hz]
+    ImuNoise noise{
+        2e-3, 2e-2, 1e-4, 1e-3};  //!< white noise densities and random walks of the biases
+    double gyro_bias = 0;         //!< turn-on bias, standard deviation of each axis [rad/s]
+    double accel_bias = 0;        //!< [m/s^2]
+    double gyro_scale = 0;        //!< scale error, standard deviation of each axis
     double accel_scale = 0;
     double gyro_misalignment = 0;  //!< axes against one another, standard deviation [rad]
     double accel_misalignment = 0;
