@@ -10,49 +10,83 @@ namespace taut
 {
 namespace
 {
-constexpr unsigned kBufferSize = 1u << 18;
-}
+constexpr unsigned kCompressedBuffer = 1u << 18;
+constexpr std::size_t kPiece = 1u << 14;  // small: a piece with damage in it is lost whole
+}  // namespace
 
-GzInput::GzInput(const std::string& path) : path_(path)
+GzInput::GzInput(const std::string& path) : path_(path), buffer_(kPeekSize + kPiece)
 {
     namespace fs = std::filesystem;
     std::error_code error;
-    if (fs::is_directory(path, error))
+    const auto type = fs::status(path, error).type();
+    if (type == fs::file_type::directory)
         throw std::runtime_error("cannot read '" + path + "': it is a folder");
+    // Opening a pipe would wait for somebody who writes to it.
+    if (type != fs::file_type::regular && type != fs::file_type::not_found && !error)
+        throw std::runtime_error("cannot read '" + path + "': it is not a regular file");
     file_.reset(gzopen(path.c_str(), "rb"));
     if (!file_) throw std::runtime_error("cannot open '" + path + "': " + std::strerror(errno));
     size_ = fs::file_size(path, error);
     if (error) throw std::runtime_error("cannot read '" + path + "': " + error.message());
     if (size_ == 0) throw std::runtime_error("'" + path + "' is empty");
-    gzbuffer(file_.get(), kBufferSize);
+    gzbuffer(file_.get(), kCompressedBuffer);
 }
 
-std::size_t GzInput::Read(void* buffer, std::size_t count)
+void GzInput::read(void* buffer, std::size_t count)
 {
-    auto* out = static_cast<char*>(buffer);
-    for (std::size_t left = count; left > 0;)
+    for (auto* out = static_cast<std::uint8_t*>(buffer); count > 0;)
     {
-        const auto piece = static_cast<unsigned>(std::min<std::size_t>(left, 1u << 30));
-        const int n = gzread(file_.get(), out, piece);
-        if (n <= 0) throwDamaged();
+        if (begin_ == end_ && !fill()) throwDamaged();
+        const std::size_t n = std::min(count, end_ - begin_);
+        std::memcpy(out, buffer_.data() + begin_, n);
+        begin_ += n;
         out += n;
-        left -= static_cast<std::size_t>(n);
+        count -= n;
     }
-    return count;
+}
+
+void GzInput::skip(std::size_t count)
+{
+    while (count > 0)
+    {
+        if (begin_ == end_ && !fill()) throwDamaged();
+        const std::size_t n = std::min(count, end_ - begin_);
+        begin_ += n;
+        count -= n;
+    }
+}
+
+GzInput::Bytes GzInput::peek(std::size_t count)
+{
+    bool more = true;
+    while (more && end_ - begin_ < std::min(count, kPeekSize)) more = fill();
+    return {buffer_.data() + begin_, end_ - begin_, !more && !isDamaged()};
 }
 
 bool GzInput::atEnd()
 {
-    const int c = gzgetc(file_.get());
-    if (c >= 0)
-    {
-        gzungetc(c, file_.get());
-        return false;
-    }
+    if (peek(1).size > 0) return false;
+    if (isDamaged()) throwDamaged();
+    return true;
+}
+
+/* One more piece into the buffer; false where the file cannot be read on. */
+bool GzInput::fill()
+{
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+    const auto room = static_cast<unsigned>(std::min(kPiece, buffer_.size() - end_));
+    const int n = gzread(file_.get(), buffer_.data() + end_, room);
+    if (n > 0) end_ += static_cast<std::size_t>(n);
+    return n > 0;
+}
+
+bool GzInput::isDamaged() const
+{
     int code = Z_OK;
     gzerror(file_.get(), &code);
-    if (code != Z_OK && code != Z_STREAM_END) throwDamaged();
-    return true;
+    return code != Z_OK && code != Z_STREAM_END;
 }
 
 std::uint64_t GzInput::compressedPosition() const
@@ -68,15 +102,5 @@ void GzInput::throwDamaged() const
     if (code == Z_OK || code == Z_BUF_ERROR || code == Z_STREAM_END)
         throw std::runtime_error("the file ends in the middle of an object");
     throw std::runtime_error(std::string("the compressed data is damaged (") + text + ")");
-}
-
-std::size_t GzInput::Write(const void*, std::size_t)
-{
-    throw std::logic_error("GzInput is for reading only");
-}
-
-std::uint64_t GzInput::Seek(std::int64_t, CStream::TSeekOrigin)
-{
-    throw std::logic_error("GzInput cannot seek");
 }
 }  // namespace taut

@@ -1,25 +1,42 @@
 #pragma once
 
-#include <mrpt/io/CStream.h>
 #include <zlib.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace taut
 {
-/** A file, compressed or not, as a stream for MRPT's archives. Unlike MRPT's own it knows its
- * position in the compressed file, tells a file that was cut off from one that ended, and never
- * returns less than was asked for. */
-class GzInput : public mrpt::io::CStream
+/** A file, compressed or not, read forward. It knows its position in the compressed file, tells a
+ * file that was cut off from one that ended, and never returns less than was asked for. Its memory
+ * does not depend on the file. */
+class GzInput
 {
  public:
-    /** Throws std::runtime_error naming the file if it cannot be read or is empty. */
+    /** Throws std::runtime_error naming the file if it cannot be read, is no regular file, or is
+     * empty. */
     explicit GzInput(const std::string& path);
 
     /** All `count` bytes; throws std::runtime_error at the end of the file and on damage. */
-    std::size_t Read(void* buffer, std::size_t count) override;
+    void read(void* buffer, std::size_t count);
+
+    /** Drops `count` bytes; throws as read() does. */
+    void skip(std::size_t count);
+
+    /** Bytes that come next; valid until the next call of anything here. */
+    struct Bytes
+    {
+        const std::uint8_t* data;
+        std::size_t size;
+        bool file_ends;  //!< with these, and without damage
+    };
+
+    /** At least `count` of them (up to kPeekSize), or as many as can be read. */
+    Bytes peek(std::size_t count);
+    static constexpr std::size_t kPeekSize = 1u << 16;
 
     /** True if no byte is left. Throws std::runtime_error if the compressed stream is cut or
      * damaged there. */
@@ -28,14 +45,10 @@ class GzInput : public mrpt::io::CStream
     std::uint64_t compressedPosition() const;
     std::uint64_t compressedSize() const { return size_; }
 
-    std::size_t Write(const void* buffer, std::size_t count) override;
-    std::uint64_t Seek(std::int64_t offset, CStream::TSeekOrigin origin) override;
-    std::uint64_t getTotalBytesCount() const override { return size_; }
-    std::uint64_t getPosition() const override { return compressedPosition(); }
-    std::string getStreamDescription() const override { return path_; }
-
  private:
+    bool fill();
     [[noreturn]] void throwDamaged() const;
+    bool isDamaged() const;
 
     struct Closer
     {
@@ -44,5 +57,7 @@ class GzInput : public mrpt::io::CStream
     std::string path_;
     std::uint64_t size_ = 0;
     std::unique_ptr<gzFile_s, Closer> file_;
+    std::vector<std::uint8_t> buffer_;  // decompressed; [begin_, end_) is not read yet
+    std::size_t begin_ = 0, end_ = 0;
 };
 }  // namespace taut

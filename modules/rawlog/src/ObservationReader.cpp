@@ -1,57 +1,140 @@
 #include "ObservationReader.h"
 
-#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/rtti/CObject.h>
 #include <mrpt/serialization/CArchive.h>
+#include <mrpt/serialization/archiveFrom_std_vector.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "ErrorText.h"
+#include "ObjectCopy.h"
+#include "PassOver.h"
+#include "Utf8.h"
 
 namespace taut
 {
+using mrpt::obs::CObservation;
+
+namespace
+{
+constexpr int kOldestFrame = 1, kNewestFrame = 2;  // in version 0 the frame has the stamp
+
+CObservation::Ptr deserialize(const ObjectCopy& copy)
+{
+    auto archive = mrpt::serialization::archiveFrom(copy.bytes());
+    auto observation = std::dynamic_pointer_cast<CObservation>(archive.ReadObject());
+    if (!observation) throw std::runtime_error("an object is not what its name says");
+    observation->sensorLabel = validUtf8(observation->sensorLabel);
+    return observation;
+}
+}  // namespace
+
 ObservationReader::ObservationReader(const std::string& path) : input_(path)
 {
-    while (queue_.empty() && readObject())
-    {
-    }
+    first_ = read();
     if (objects_ == 0)
         throw std::runtime_error(
             "'" + path + "' is not a rawlog: " + (damage_.empty() ? "it holds nothing" : damage_));
 }
 
-mrpt::obs::CObservation::Ptr ObservationReader::next()
+std::optional<LogEntry> ObservationReader::next()
 {
-    while (queue_.empty())
-        if (!readObject()) return {};
-    auto observation = std::move(queue_.front());
-    queue_.pop_front();
-    return observation;
+    return first_ ? std::exchange(first_, {}) : read();
+}
+
+/* An object that fails ends the reading: objects carry no length, so that the next one cannot be
+ * told from what its values happen to be. */
+std::optional<LogEntry> ObservationReader::read()
+{
+    while (!finished_)
+    {
+        try
+        {
+            if (auto entry = readObject()) return entry;
+        }
+        catch (const std::exception& e)
+        {
+            damage_ = errorText(e);
+            finished_ = true;
+        }
+    }
+    return {};
 }
 
 /* Objects are dispatched by class, which serves both formats (observations; pairs of actions and
- * sensory frames) and mixtures of them. An object that fails ends the reading: objects carry no
- * length, so that there is no way to find the next one. */
-bool ObservationReader::readObject()
+ * sensory frames) and mixtures of them. */
+std::optional<LogEntry> ObservationReader::readObject()
 {
-    if (finished_) return false;
-    finished_ = true;
-    try
+    if (frame_ == 0u)
     {
-        if (input_.atEnd()) return false;
-        auto archive = mrpt::serialization::archiveFrom(input_);
-        const auto object = archive.ReadObject();
-        if (!object) throw std::runtime_error("an empty object");
-        objects_++;
-        if (auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object))
-            queue_.push_back(std::move(observation));
-        else if (const auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object))
-            for (const auto& one : *frame) queue_.push_back(one);
-        finished_ = false;
+        endFrame();
+        return {};
     }
-    catch (const std::exception& e)
+    if (!frame_ && input_.atEnd())
     {
-        damage_ = errorText(e);
+        finished_ = true;
+        return {};
     }
-    return !finished_;
+    const auto next = input_.peek(kLongestHeader);
+    const auto header = parseObjectHeader(next.data, next.size);
+    if (!header)
+        throw std::runtime_error(
+            next.size < kLongestHeader ? "the file ends in the middle of an object"
+                                       : "there is no object where one must begin");
+    if (!mrpt::rtti::findRegisteredClass(header->name))
+        throw std::runtime_error("an object is of the unknown class '" + header->name + "'");
+    const std::string name = header->shortName();
+    if (name == "CSensoryFrame")
+    {
+        beginFrame(*header);
+        return {};
+    }
+    if (frame_) --*frame_;
+    LogEntry entry = readObservation(*header);
+    objects_++;
+    const bool is_observation = name.rfind("CObservation", 0) == 0;
+    return is_observation ? std::optional(std::move(entry)) : std::nullopt;
+}
+
+void ObservationReader::beginFrame(const ObjectHeader& header)
+{
+    if (frame_) throw std::runtime_error("a sensory frame lies within another");
+    if (header.version < kOldestFrame || header.version > kNewestFrame)
+        throw std::runtime_error(
+            "version " + std::to_string(header.version) + " of the class '" + header.name +
+            "' is not known");
+    input_.skip(header.bytes);
+    if (header.version < kNewestFrame) input_.skip(sizeof(std::uint32_t));  // its number
+    std::uint32_t count = 0;
+    input_.read(&count, sizeof count);
+    frame_ = count;
+    objects_++;
+}
+
+void ObservationReader::endFrame()
+{
+    std::uint8_t mark = 0;
+    input_.read(&mark, sizeof mark);
+    if (mark != kObjectEnd) throw std::runtime_error("the end mark of a sensory frame is missing");
+    frame_.reset();
+}
+
+LogEntry ObservationReader::readObservation(const ObjectHeader& header)
+{
+    LogEntry entry;
+    entry.class_name = header.shortName();
+    if (ObjectCopy::knows(entry.class_name))
+    {
+        const ObjectCopy copy(input_, header);
+        entry.observation = deserialize(copy);
+        entry.label = entry.observation->sensorLabel;
+        entry.bytes = copy.bytes().size();
+    }
+    else
+    {
+        entry.label = validUtf8(passOver(input_, header, frame_ == 0u));
+    }
+    return entry;
 }
 }  // namespace taut

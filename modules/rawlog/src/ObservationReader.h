@@ -2,23 +2,35 @@
 
 #include <mrpt/obs/CObservation.h>
 
-#include <deque>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "GzInput.h"
+#include "ObjectHeader.h"
 
 namespace taut
 {
-/** Gives the observations of a rawlog one by one, whichever of the two formats it has. */
+/** An observation of a rawlog. */
+struct LogEntry
+{
+    std::string class_name;  //!< without namespaces
+    std::string label;       //!< valid UTF-8; of a class that taut does not use it may be empty
+    mrpt::obs::CObservation::Ptr observation;  //!< null unless it is of a LiDAR or an IMU
+    std::size_t bytes = 0;                     //!< of the observation in the file, if not null
+};
+
+/** Gives the observations of a rawlog one by one, whichever of the two formats it has. Memory is
+ * bounded by what the file holds and by the size of a scan, whatever sizes are written in it. */
 class ObservationReader
 {
  public:
     /** Throws std::runtime_error naming the file if it is missing, empty or no rawlog. */
     explicit ObservationReader(const std::string& path);
 
-    /** The next one in the order of the file; null at the end or where the file cannot be read on.
+    /** The next one in the order of the file; none at the end or where the file cannot be read on.
      */
-    mrpt::obs::CObservation::Ptr next();
+    std::optional<LogEntry> next();
 
     /** Why the reading stopped before the end of the log; empty if it did not. */
     const std::string& damage() const { return damage_; }
@@ -27,12 +39,17 @@ class ObservationReader
     std::uint64_t bytesTotal() const { return input_.compressedSize(); }
 
  private:
-    bool readObject();
+    std::optional<LogEntry> read();
+    std::optional<LogEntry> readObject();
+    void beginFrame(const ObjectHeader& header);
+    void endFrame();
+    LogEntry readObservation(const ObjectHeader& header);
 
     GzInput input_;
-    std::deque<mrpt::obs::CObservation::Ptr> queue_;  // of the sensory frame being given out
+    std::optional<LogEntry> first_;  // read on opening
     std::string damage_;
     std::size_t objects_ = 0;
+    std::optional<std::uint32_t> frame_;  // observations left of the sensory frame that is open
     bool finished_ = false;
 };
 }  // namespace taut

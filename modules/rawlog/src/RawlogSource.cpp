@@ -24,11 +24,12 @@ using mrpt::obs::CObservationIMU;
 
 namespace
 {
-constexpr Duration kLookahead = 2'000'000'000;    // in it the sensors must show up
-constexpr std::size_t kLookaheadCount = 20'000;   // whatever the stamps say
-constexpr Duration kDisorder = 1'000'000'000;     // between sensors, in the order of the file
-constexpr Duration kLargestOverlap = 20'000'000;  // of sweeps that follow each other
-constexpr double kWorstBadShare = 0.05;           // of the points of a scan
+constexpr Duration kLookahead = 2'000'000'000;     // in it the sensors must show up
+constexpr std::size_t kLookaheadCount = 20'000;    // whatever the stamps say
+constexpr std::size_t kLookaheadBytes = 1u << 28;  // likewise
+constexpr Duration kDisorder = 1'000'000'000;      // between sensors, in the order of the file
+constexpr Duration kLargestOverlap = 20'000'000;   // of sweeps that follow each other
+constexpr double kWorstBadShare = 0.05;            // of the points of a scan
 
 std::string seconds(Duration d)
 {
@@ -62,8 +63,8 @@ struct RawlogSource::Impl
 
  private:
     void lookAhead();
-    CObservation::Ptr read();
-    void account(const CObservation& observation);
+    std::optional<LogEntry> read();
+    void account(const LogEntry& entry);
     template <class RigPart>
     void choose(
         SensorChoice& choice, const std::string& label, RigPart& rig, std::string& chosen_label);
@@ -110,36 +111,41 @@ struct RawlogSource::Impl
  * sensor of a kind before any work was done. */
 void RawlogSource::Impl::lookAhead()
 {
-    while (ahead.size() < kLookaheadCount)
+    std::size_t bytes = 0;
+    while (ahead.size() < kLookaheadCount && bytes < kLookaheadBytes)
     {
-        auto observation = read();
-        if (!observation) break;
-        if (const auto* o = dynamic_cast<const CObservationIMU*>(observation.get()))
+        auto entry = read();
+        if (!entry) break;
+        if (const auto* o = dynamic_cast<const CObservationIMU*>(entry->observation.get()))
             if (!T_imu_vehicle && imu.accepts(o->sensorLabel)) setBody(*o);
-        ahead.push_back(std::move(observation));
+        bytes += entry->bytes;
+        ahead.push_back(std::move(entry->observation));
         if (progress.now - progress.first > kLookahead) break;
     }
 }
 
-CObservation::Ptr RawlogSource::Impl::read()
+/* The next observation of a LiDAR or an IMU; the others are counted alone. */
+std::optional<LogEntry> RawlogSource::Impl::read()
 {
-    auto observation = reader.next();
-    progress.bytes_read = reader.bytesRead();
-    progress.bytes_total = reader.bytesTotal();
-    if (observation) account(*observation);
-    return observation;
+    for (;;)
+    {
+        auto entry = reader.next();
+        progress.bytes_read = reader.bytesRead();
+        progress.bytes_total = reader.bytesTotal();
+        if (entry) account(*entry);
+        if (!entry || entry->observation) return entry;
+    }
 }
 
-void RawlogSource::Impl::account(const CObservation& observation)
+void RawlogSource::Impl::account(const LogEntry& entry)
 {
-    const std::string class_name = observation.GetRuntimeClass()->className;
-    progress.sensors[{observation.sensorLabel, class_name.substr(class_name.rfind(':') + 1)}]++;
+    progress.sensors[{entry.label, entry.class_name}]++;
+    if (!entry.observation) return;  // its stamps may be by another clock
+    const CObservation& observation = *entry.observation;
     if (isLidar(observation))
-        choose(lidar, observation.sensorLabel, config.rig.lidar, progress.lidar_label);
-    else if (dynamic_cast<const CObservationIMU*>(&observation))
-        choose(imu, observation.sensorLabel, config.rig.imu, progress.imu_label);
+        choose(lidar, entry.label, config.rig.lidar, progress.lidar_label);
     else
-        return;  // stamps of other classes may be by another clock
+        choose(imu, entry.label, config.rig.imu, progress.imu_label);
     if (observation.timestamp == INVALID_TIMESTAMP) return;
     const Time t = toTime(observation.timestamp);
     if (progress.first == 0) progress.first = progress.now = t;
@@ -175,7 +181,7 @@ std::optional<Measurement> RawlogSource::Impl::next()
         CObservation::Ptr observation;
         if (ahead.empty())
         {
-            observation = read();
+            if (auto entry = read()) observation = std::move(entry->observation);
         }
         else
         {

@@ -28,7 +28,8 @@ struct StreamProgress
     std::uint64_t points_bad_time = 0;    //!< of these: 2 s or more away from their scan's stamp
     bool has_imu = false;                 //!< an IMU was found, at the latest 2 s into the log
     std::string lidar_label, imu_label;   //!< as chosen; empty before the first of them
-    /** Observations by label and MRPT class, of all sensors, used or not. */
+    /** Observations by label and MRPT class, of all sensors, used or not. The label of one that is
+     * neither LiDAR nor IMU may be empty. Labels are valid UTF-8, as everywhere here. */
     std::map<std::pair<std::string, std::string>, std::size_t> sensors;
 
     /** 0 to 1, of the file: for a bar. */

@@ -30,6 +30,9 @@ struct RawlogConfig
  * The body is the IMU: T_imu_lidar = T_vehicle_imu^-1 T_vehicle_lidar from the sensors' poses in
  * the log (or the rig). Without an IMU the body is the vehicle.
  *
+ * Sizes that are written in the file are not believed. An object larger than its file, or than any
+ * scan, ends the reading as other damage does.
+ *
  * Stamps of each sensor are strictly increasing in what is given out. What cannot be used is
  * skipped with a warning: rawlog_truncated   the file ends early or is damaged; see incomplete()
  *   no_stamp           observation without a valid stamp
