@@ -353,4 +353,134 @@ TEST_F(FalseSize, LabelsAreValidUtf8)
     EXPECT_EQ(content.scans[0].sensor_label, valid);
     EXPECT_EQ(content.progress.sensors.count({"\xef\xbf\xbd", "CObservationGPS"}), 1u);
 }
+
+/* The bytes of older versions are made by hand: MRPT writes its own version alone. */
+class OlderVersion : public FalseSize
+{
+ protected:
+    static Bytes bytesOf(const mrpt::serialization::CSerializable& object)
+    {
+        return LogBytes().add(object).bytes();
+    }
+    static std::size_t versionAt(const Bytes& bytes) { return 1u + (bytes[0] & 0x7fu); }
+
+    /** The object between an IMU sample and a scan. */
+    Content readBetween(const Bytes& object) const
+    {
+        LogBytes log;
+        Bytes bytes = log.add(mrptImu(kStart)).bytes();
+        bytes.insert(bytes.end(), object.begin(), object.end());
+        const Bytes scan = bytesOf(mrptScan(kStart + 1000 * kMillisecond));
+        bytes.insert(bytes.end(), scan.begin(), scan.end());
+        return read(bytes);
+    }
+};
+
+TEST_F(OlderVersion, ImuSamplesOfVersionsTwoAndThreeAreRead)
+{
+    constexpr std::size_t kPose = 1 + 20 + 1 + 12 * 8 + 1, kValues = 31;
+    const Bytes size{kValues, 0, 0, 0};
+    for (const auto version : {std::uint8_t{2}, std::uint8_t{3}})
+    {
+        Bytes bytes = bytesOf(mrptImu(kStart + kMillisecond, "IMU", {0, {1, 2, 3}, {4, 5, 6}}));
+        bytes[versionAt(bytes)] = version;
+        const std::size_t present = versionAt(bytes) + 1 + kPose, values = present + kValues + 8;
+        bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(values), size.begin(), size.end());
+        bytes.insert(
+            bytes.begin() + static_cast<std::ptrdiff_t>(present), size.begin(), size.end());
+        const auto content = readBetween(bytes);
+        EXPECT_FALSE(content.incomplete);
+        ASSERT_EQ(content.imu.size(), 2u);
+        EXPECT_EQ(content.imu[1].gyro, Vector3d(1, 2, 3));
+        EXPECT_EQ(content.imu[1].accel, Vector3d(4, 5, 6));
+        EXPECT_EQ(content.scans.size(), 1u);
+    }
+}
+
+TEST_F(OlderVersion, VelodyneScansOfVersionsZeroAndOneAreRead)
+{
+    constexpr std::size_t kPoints = 100, kTexts = 15 + 12 + 15 + 25, kSizes = 4 * 4;
+    for (const auto version : {std::uint8_t{0}, std::uint8_t{1}})
+    {
+        Bytes bytes = bytesOf(mrptScan(kStart));
+        bytes[versionAt(bytes)] = version;
+        bytes.resize(bytes.size() - 1 - kTexts - kSizes - kPoints * (8 + 2) - (version == 0));
+        bytes.push_back(0x88);
+        const auto content = readBetween(bytes);
+        EXPECT_FALSE(content.incomplete);
+        ASSERT_EQ(content.scans.size(), 2u);
+        EXPECT_EQ(content.scans[0].points.size(), kPoints);
+    }
+}
+
+TEST_F(OlderVersion, AVersionThatIsNotKnownEndsTheReadingWithItsNumber)
+{
+    Bytes bytes = bytesOf(mrptImu(kStart));
+    bytes[versionAt(bytes)] = 9;
+    LogBytes log;
+    log.add(mrptImu(kStart)).add(mrptScan(kStart));
+    bytes.insert(bytes.begin(), log.bytes().begin(), log.bytes().end());
+    const auto content = read(bytes);
+    EXPECT_TRUE(content.incomplete);
+    ASSERT_EQ(content.warnings.count("rawlog_truncated"), 1u);
+    EXPECT_THAT(content.warnings.kept()[0].text, HasSubstr("version 9"));
+}
+
+TEST_F(FalseSize, BooleansAreAnyNumberButZero)
+{
+    LogBytes log;
+    log.add(mrptImu(kStart)).add(mrptScan(kStart));
+    constexpr std::size_t kPresent = 1 + 26 + 1 + 1 + 20 + 1 + 12 * 8 + 1;
+    ASSERT_EQ(log.bytes()[kPresent], 1);
+    log.bytes()[kPresent] = 58;
+    EXPECT_EQ(read(log.bytes()).imu.size(), 1u);
+}
+
+TEST_F(FalseSize, StampsFarFromOurCenturyAreNone)
+{
+    for (const std::int64_t ticks :
+         {std::int64_t{1}, std::numeric_limits<std::int64_t>::max(),
+          std::numeric_limits<std::int64_t>::min()})
+    {
+        auto imu = mrptImu(kStart);
+        imu.timestamp = mrpt::Clock::time_point(mrpt::Clock::duration(ticks));
+        auto scan = mrptScan(kStart);
+        scan.point_cloud.timestamp[3] = imu.timestamp;
+        LogBytes log;
+        const auto content = read(log.add(mrptImu(kStart)).add(imu).add(scan).bytes());
+        EXPECT_EQ(content.imu.size(), 1u);
+        EXPECT_EQ(content.warnings.count("no_stamp"), 1u);
+        ASSERT_EQ(content.scans.size(), 1u);
+        EXPECT_EQ(content.scans[0].points.size(), 99u);
+        EXPECT_EQ(content.progress.points_bad_time, 1u);
+    }
+}
+
+TEST_F(FalseSize, ASmallFileThatDecompressesToMuchDoesNotFillTheMemory)
+{
+    LogBytes log;
+    log.add(mrptImu(kStart)).add(mrptScan(kStart));
+    const Bytes zeros(1u << 20);
+    for (const std::uint32_t length : {0xfffffffeu, 300u << 20})
+    {
+        mrpt::obs::CObservationComment comment;
+        comment.text = std::string(3, 'x');
+        LogBytes end;
+        end.add(comment).add(mrptImu(kStart + kMillisecond));
+        const double before = peakMemory();
+        const auto file = gzopen(path("a.rawlog").c_str(), "wb1");
+        gzwrite(file, log.bytes().data(), static_cast<unsigned>(log.bytes().size()));
+        const std::size_t text = 1 + 30 + 1;  // its length, then the letters
+        gzwrite(file, end.bytes().data(), text);
+        gzwrite(file, &length, sizeof length);
+        for (int i = 0; i < 300; i++) gzwrite(file, zeros.data(), 1u << 20);
+        const std::size_t rest = text + sizeof length + 3;
+        gzwrite(file, end.bytes().data() + rest, static_cast<unsigned>(end.bytes().size() - rest));
+        gzclose(file);
+        const auto content = readAll(path("a.rawlog"));
+        EXPECT_EQ(content.scans.size(), 1u);
+        EXPECT_EQ(content.imu.size(), 2u);
+        EXPECT_LT(peakMemory() - before, 100);
+    }
+}
 }  // namespace taut::test

@@ -3,6 +3,8 @@
 #include <mrpt/core/Clock.h>
 #include <mrpt/poses/CPose3D.h>
 
+#include <algorithm>
+
 #include "taut/core/Geometry.h"
 #include "taut/core/Time.h"
 
@@ -12,9 +14,22 @@ namespace taut
 inline constexpr std::int64_t kTicksTo1970 = 116444736000000000;
 inline constexpr std::int64_t kNanosecondsPerTick = 100;
 
+/** 120 years to each side of 1970, in ticks: differences of such stamps fit into nanoseconds. */
+inline constexpr std::int64_t kLargestTicks = 120 * std::int64_t{31'557'600} * 10'000'000;
+
+/** False for INVALID_TIMESTAMP as well. */
+inline bool isValidStamp(mrpt::Clock::time_point t)
+{
+    const auto ticks = t.time_since_epoch().count();
+    return ticks >= kTicksTo1970 - kLargestTicks && ticks <= kTicksTo1970 + kLargestTicks;
+}
+
+/** What is no valid stamp is taken for the closest one that is. */
 inline Time toTime(mrpt::Clock::time_point t)
 {
-    return (t.time_since_epoch().count() - kTicksTo1970) * kNanosecondsPerTick;
+    const auto ticks = std::clamp<std::int64_t>(
+        t.time_since_epoch().count(), kTicksTo1970 - kLargestTicks, kTicksTo1970 + kLargestTicks);
+    return (ticks - kTicksTo1970) * kNanosecondsPerTick;
 }
 
 /** Rounded to MRPT's 100 ns. */

@@ -86,6 +86,14 @@ std::uint64_t ObjectCopy::values(std::size_t bytes_each, std::uint64_t most)
     return n;
 }
 
+/* MRPT copies their bytes into `bool`, for which others than 0 and 1 are undefined. */
+void ObjectCopy::flags(std::size_t count)
+{
+    take(count);
+    for (auto at = bytes_.end() - static_cast<std::ptrdiff_t>(count); at != bytes_.end(); ++at)
+        *at = *at != 0;
+}
+
 void ObjectCopy::string()
 {
     values(1, kLongestString);
@@ -116,7 +124,8 @@ void ObjectCopy::imu(int version)
     pose();
     if (version == 4)
     {
-        take(kImuValues + 8 + kImuValues * 8);  // which are there, the stamp, the values
+        flags(kImuValues);         // which are there
+        take(8 + kImuValues * 8);  // the stamp, the values
     }
     else
     {
@@ -138,7 +147,7 @@ void ObjectCopy::velodyne(int version)
     values(kLaserCorrection, kMostLasers);
     for (int i = 0; i < 3; i++) values(4, kMostPoints);  // x, y, z
     values(1, kMostPoints);                              // intensity
-    if (version >= 1) take(1);
+    if (version >= 1) flags(1);
     if (version < 2) return;
     string();  // the types, in words
     string();
@@ -161,7 +170,8 @@ void ObjectCopy::rotating(int version)
     string();
     take(2 * 8);
     pose();
-    take(8 + 1);
+    take(8);
+    flags(1);
     const std::uint64_t pixels = image(2);
     image(1);
     const auto layers = number<std::uint16_t>();

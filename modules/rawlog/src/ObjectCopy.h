@@ -23,7 +23,7 @@ class ObjectCopy
      * that is not known. */
     ObjectCopy(GzInput& input, const ObjectHeader& header);
 
-    /** Header, fields and end mark. */
+    /** Header, fields and end mark, as in the file but for booleans, which are 0 or 1. */
     const std::vector<std::uint8_t>& bytes() const { return bytes_; }
 
  private:
@@ -31,6 +31,7 @@ class ObjectCopy
     template <class T>
     T number();
     std::uint64_t values(std::size_t bytes_each, std::uint64_t most);
+    void flags(std::size_t count);
     void string();
     void end();
     void pose();

@@ -146,7 +146,7 @@ void RawlogSource::Impl::account(const LogEntry& entry)
         choose(lidar, entry.label, config.rig.lidar, progress.lidar_label);
     else
         choose(imu, entry.label, config.rig.imu, progress.imu_label);
-    if (observation.timestamp == INVALID_TIMESTAMP) return;
+    if (!isValidStamp(observation.timestamp)) return;
     const Time t = toTime(observation.timestamp);
     if (progress.first == 0) progress.first = progress.now = t;
     progress.now = std::max(progress.now, t);
@@ -229,7 +229,7 @@ std::optional<Measurement> RawlogSource::Impl::convert(const CObservation& obser
     const auto* as_imu = dynamic_cast<const CObservationIMU*>(&observation);
     const bool mine = as_imu ? imu.chosen() == observation.sensorLabel
                              : isLidar(observation) && lidar.chosen() == observation.sensorLabel;
-    const bool stamped = observation.timestamp != INVALID_TIMESTAMP;
+    const bool stamped = isValidStamp(observation.timestamp);
     if (stamped && beyondEnd(toTime(observation.timestamp)))
     {
         finish();

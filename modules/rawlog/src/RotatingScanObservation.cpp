@@ -15,6 +15,7 @@ using mrpt::obs::CObservationRotatingScan;
 
 namespace
 {
+constexpr double kLongestSweep = 3600;  // [s]; far above what the times of points can be
 constexpr char kVlp16[] = "VLP-16", kHdl32[] = "HDL-32E";  // as MRPT names them
 
 void check(const CObservationRotatingScan& scan)
@@ -29,6 +30,8 @@ void check(const CObservationRotatingScan& scan)
         scan.rangeResolution, scan.startAzimuth, scan.azimuthSpan, scan.sweepDuration};
     for (const double v : numbers)
         if (!std::isfinite(v)) throw std::runtime_error("its geometry is not finite");
+    if (std::abs(scan.sweepDuration) > kLongestSweep)
+        throw std::runtime_error("its sweep takes longer than an hour");
     // MRPT's fromVelodyne() counts columns a laser too often and azimuths clockwise, against the
     // meaning of these fields: a world made of it would be a mirror image.
     if ((scan.lidarModel == kVlp16 || scan.lidarModel == kHdl32) && scan.azimuthSpan > 0)
