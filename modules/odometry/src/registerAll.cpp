@@ -1,6 +1,7 @@
 #include "taut/odometry/registerAll.h"
 
 #include "taut/features/Register.h"
+#include "taut/graph/Register.h"
 #include "taut/map/Register.h"
 #include "taut/preintegration/Register.h"
 #include "taut/solver/Register.h"
@@ -13,5 +14,6 @@ void registerAll()
     registerFeatureExtractors();
     registerSolvers();
     registerMaps();
+    registerGraphOptimizers();
 }
 }  // namespace taut
