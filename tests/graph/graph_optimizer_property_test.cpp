@@ -24,7 +24,7 @@ std::shared_ptr<GraphOptimizer> makeOptimizer(const std::string& name, const std
 {
     registerGraphOptimizers();
     ConfigSection section(
-        yaml.empty() ? mrpt::containers::yaml() : mrpt::containers::yaml::FromText(yaml), "graph");
+        yaml.empty() ? YamlNode() : parseYaml(yaml), "graph");
     auto optimizer = createPlugin<GraphOptimizer>(name);
     optimizer->configure(section);
     section.rejectUnknown();

@@ -1,7 +1,6 @@
 #include "taut/odometry/registerAll.h"
 
 #include "taut/features/Register.h"
-#include "taut/graph/Register.h"
 #include "taut/map/Register.h"
 #include "taut/preintegration/Register.h"
 #include "taut/solver/Register.h"
@@ -14,6 +13,5 @@ void registerAll()
     registerFeatureExtractors();
     registerSolvers();
     registerMaps();
-    registerGraphOptimizers();
 }
 }  // namespace taut
