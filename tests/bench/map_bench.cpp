@@ -65,7 +65,8 @@ void kdTreeMapMatch(benchmark::State& state)
     for (const auto& features : walkOf200()) map.insert(features, single);
     Executor executor(static_cast<int>(state.range(0)));
     std::vector<Correspondence> found;
-    for (auto _ : state) map.match(walkOf200()[150], found, executor);
+    MapScratch scratch;
+    for (auto _ : state) map.match(walkOf200()[150], found, scratch, executor);
     std::size_t matched = 0;
     for (const Correspondence& c : found) matched += c.surface != Surface::None;
     state.counters["queries"] = static_cast<double>(found.size());

@@ -105,15 +105,17 @@ void octreeMapMatch(benchmark::State& state)
     std::vector<MapPoint> queries;
     for (std::size_t i = 0; i < all.size(); i += all.size() / 2000) queries.push_back(all[i]);
     std::vector<Correspondence> found;
+    MapScratch scratch;
     for (auto _ : state)
     {
         if (state.range(0) != 0)
         {
             state.PauseTiming();
+            map.keep(scratch);
             map.insert(queries, single);
             state.ResumeTiming();
         }
-        map.match(queries, found, executor);
+        map.match(queries, found, scratch, executor);
     }
     state.counters["queries"] = static_cast<double>(queries.size());
 }

@@ -17,7 +17,8 @@ Correspondence matchOne(const KdTreeMap& map, const Vector3d& position, FeatureK
 {
     Executor executor;
     std::vector<Correspondence> found;
-    map.match({{position, kind}}, found, executor);
+    MapScratch scratch;
+    map.match({{position, kind}}, found, scratch, executor);
     return found.at(0);
 }
 }  // namespace

@@ -2,8 +2,10 @@
  * What every map must do: add a class name below to hold another one to it. */
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include "surfaces.h"
 #include "taut/core/Plugins.h"
@@ -59,10 +61,80 @@ class AnyMap : public ::testing::TestWithParam<const char*>
     {
         Executor executor(threads);
         std::vector<Correspondence> correspondences(3);  // not empty: must be replaced
-        in.match(queries, correspondences, executor);
+        MapScratch scratch;
+        in.match(queries, correspondences, scratch, executor);
         EXPECT_EQ(correspondences.size(), queries.size());
         return correspondences;
     }
+
+    /** Scans of a stepped floor and of a rougher one beside it, with noise along the rays: enough
+     * of them that a map that learns has learnt. */
+    static void growOld(Map& map)
+    {
+        Random random(11);
+        for (int scan = 0; scan < 40; scan++) map.insert(scanOfFloors(random), single);
+    }
+
+    static std::vector<MapPoint> scanOfFloors(Random& random)
+    {
+        std::vector<MapPoint> points = onFloor(random, 0, 1500, 0.005);
+        const std::vector<MapPoint> rough = onFloor(random, kRoughFloor, 1500, 0.03);
+        points.insert(points.end(), rough.begin(), rough.end());
+        return points;
+    }
+
+    /** Points of steps 5 cm high, seen by a sensor that moves to and fro above them. */
+    static std::vector<MapPoint> onFloor(Random& random, double x, int count, double noise)
+    {
+        const Patch floor{{x, 0, 0}, Vector3d::UnitX(), Vector3d::UnitY(), 4, 0};
+        std::vector<MapPoint> points = floor.planePoints(random, count, FeatureKind::Plane);
+        for (MapPoint& p : points)
+        {
+            if (std::fmod(p.position.x() + 100, 1.4) > 0.7) p.position.z() += 0.05;
+            const Vector3d sensor(x + random.uniform(-3, 3), 0, 1.5);
+            p.view = (sensor - p.position).normalized();
+            p.position += noise * random.normal() * p.view;
+        }
+        return points;
+    }
+
+    /** The queries of a later iteration: moved and turned a little. */
+    static std::vector<MapPoint> moved(std::vector<MapPoint> queries, double by)
+    {
+        for (MapPoint& q : queries)
+        {
+            q.position += by * Vector3d(0.3, 0.2, 0.1);
+            q.view = (q.view + by * Vector3d(0.2, -0.4, 0.1)).normalized();
+        }
+        return queries;
+    }
+
+    static void expectSame(
+        const std::vector<Correspondence>& one, const std::vector<Correspondence>& other)
+    {
+        ASSERT_EQ(one.size(), other.size());
+        for (std::size_t i = 0; i < one.size(); i++)
+        {
+            ASSERT_EQ(one[i].surface, other[i].surface) << i;
+            ASSERT_EQ(one[i].direction, other[i].direction) << i;
+            ASSERT_EQ(one[i].point, other[i].point) << i;
+            ASSERT_EQ(one[i].sigma, other[i].sigma) << i;
+        }
+    }
+
+    static int planesIn(const std::vector<Correspondence>& found)
+    {
+        return static_cast<int>(std::count_if(
+            found.begin(), found.end(),
+            [](const Correspondence& c) { return c.surface == Surface::Plane; }));
+    }
+
+    std::shared_ptr<Map> copyOf(const Map& of) const
+    {
+        return std::dynamic_pointer_cast<Map>(of.duplicateGetSmartPtr());
+    }
+
+    static constexpr double kRoughFloor = 10;  // [m], x of its middle
 
     static void expectOnPlane(const std::vector<Correspondence>& found, const Patch& patch)
     {
@@ -154,16 +226,140 @@ TEST_P(AnyMap, GivesTheSameWithAnyNumberOfThreads)
     see(*map, patch);
     const auto queries = queriesOn(patch, FeatureKind::Any, 3000);
     const auto one = match(*map, queries, 1);
-    for (const int threads : {2, 5})
+    for (const int threads : {2, 5}) expectSame(one, match(*map, queries, threads));
+}
+
+TEST_P(AnyMap, GrowsOldTheSameWithAnyNumberOfThreads)
+{
+    const auto other = make();
+    Random random(11);
+    Executor many(3);
+    MapScratch scratch, scratch_of_many;
+    std::vector<Correspondence> found, found_by_many;
+    for (int scan = 0; scan < 40; scan++)
     {
-        const auto many = match(*map, queries, threads);
-        for (std::size_t i = 0; i < one.size(); i++)
-        {
-            EXPECT_EQ(one[i].surface, many[i].surface);
-            EXPECT_EQ(one[i].direction, many[i].direction);
-            EXPECT_EQ(one[i].point, many[i].point);
-            EXPECT_EQ(one[i].sigma, many[i].sigma);
-        }
+        const auto points = scanOfFloors(random);
+        map->insert(points, single);
+        other->insert(points, many);
+        map->match(points, found, scratch, single);
+        other->match(points, found_by_many, scratch_of_many, many);
+        expectSame(found, found_by_many);
+        map->keep(scratch);
+        other->keep(scratch_of_many);
+    }
+    EXPECT_GT(planesIn(found), 2000);
+}
+
+TEST_P(AnyMap, AnswersWhateverWasAskedBefore)
+{
+    growOld(*map);
+    const auto untouched = copyOf(*map);
+    Random random(12);
+    const auto before = onFloor(random, kRoughFloor, 500, 0.1);
+    const auto queries = onFloor(random, 0, 500, 0);
+    MapScratch scratch;
+    std::vector<Correspondence> found;
+    for (int round = 0; round < 2; round++)
+    {
+        map->match(before, found, scratch, single);
+        map->match(moved(queries, 1), found, scratch, single);
+        map->match(queries, found, scratch, single);
+        const auto alone = match(*untouched, queries);
+        expectSame(found, alone);
+        EXPECT_GT(planesIn(alone), 400);
+        // What was asked has no part in what the map becomes.
+        const auto more = scanOfFloors(random);
+        map->insert(more, single);
+        untouched->insert(more, single);
+    }
+}
+
+TEST_P(AnyMap, AScratchThatIsUsedAgainChangesNothing)
+{
+    growOld(*map);
+    Random random(13);
+    auto queries = scanOfFloors(random);
+    MapScratch scratch;
+    std::vector<Correspondence> found;
+    for (int iteration = 0; iteration < 30; iteration++)
+    {
+        map->match(queries, found, scratch, single);
+        expectSame(found, match(*map, queries));
+        queries = moved(queries, iteration % 3 == 0 ? 0.03 : 0.002);
+    }
+    const auto other = make();
+    see(*other, tiltedPatch({2, -1, 0.5}));
+    for (Map* next : {other.get(), map.get()})
+    {
+        next->match(queries, found, scratch, single);
+        expectSame(found, match(*next, queries));
+    }
+}
+
+TEST_P(AnyMap, KeepingChangesNoAnswerBeforeTheNextInsertion)
+{
+    growOld(*map);
+    Random random(14);
+    const auto queries = scanOfFloors(random);
+    MapScratch first, second;
+    std::vector<Correspondence> before, after;
+    map->match(queries, before, first, single);
+    map->match(moved(queries, 0.1), after, second, single);
+    map->keep(first);
+    expectSame(before, match(*map, queries));
+    for (MapScratch* scratch : {&first, &second})
+    {
+        map->match(queries, after, *scratch, single);
+        expectSame(before, after);
+        map->keep(*scratch);
+    }
+    expectSame(before, match(*map, queries));
+    // A scratch of a map that has changed since has nothing to be kept.
+    map->match(queries, after, first, single);
+    map->slide({1000, 0, 0});
+    map->keep(first);
+    growOld(*map);
+    map->match(queries, after, first, single);
+    expectSame(after, match(*map, queries));
+}
+
+TEST_P(AnyMap, AnswersTwoThreadsAtOnceAsOneAfterTheOther)
+{
+    growOld(*map);
+    Random random(15);
+    const Map& shared = *map;
+    const std::vector<MapPoint> queries[] = {
+        scanOfFloors(random), onFloor(random, kRoughFloor, 3000, 0.05)};
+    constexpr int kIterations = 20;
+    std::vector<Correspondence> found[2][kIterations];
+    const auto ask = [&](int which)
+    {
+        Executor executor(2);
+        MapScratch scratch;
+        for (int i = 0; i < kIterations; i++)
+            shared.match(moved(queries[which], 0.01 * i), found[which][i], scratch, executor);
+    };
+    std::thread one(ask, 0), other(ask, 1);
+    one.join();
+    other.join();
+    for (int which = 0; which < 2; which++)
+        for (int i = 0; i < kIterations; i++)
+            expectSame(found[which][i], match(shared, moved(queries[which], 0.01 * i)));
+}
+
+TEST_P(AnyMap, ACopyAnswersAsItsOriginal)
+{
+    growOld(*map);
+    const auto copy = copyOf(*map);
+    Random random(16);
+    const auto queries = scanOfFloors(random);
+    expectSame(match(*map, queries), match(*copy, queries));
+    for (int scan = 0; scan < 3; scan++)
+    {
+        const auto more = scanOfFloors(random);
+        map->insert(more, single);
+        copy->insert(more, single);
+        expectSame(match(*map, queries), match(*copy, queries));
     }
 }
 

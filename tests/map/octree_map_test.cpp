@@ -19,7 +19,8 @@ Correspondence matchOne(const OctreeMap& map, const Vector3d& query, FeatureKind
 {
     Executor executor(1);
     std::vector<Correspondence> found;
-    map.match({{query, kind}}, found, executor);
+    MapScratch scratch;
+    map.match({{query, kind}}, found, scratch, executor);
     return found.at(0);
 }
 
@@ -113,7 +114,8 @@ std::vector<MapPoint> onBoards(int count, unsigned seed)
 double worstDistance(const OctreeMap& map, const std::vector<MapPoint>& queries)
 {
     std::vector<Correspondence> found;
-    map.match(queries, found, single);
+    MapScratch scratch;
+    map.match(queries, found, scratch, single);
     double worst = 0;
     for (std::size_t i = 0; i < queries.size(); i++)
     {
@@ -152,17 +154,17 @@ TEST(OctreeMap, AsThickAsTheNoiseIsThinEnough)
     };
     std::vector<MapPoint> all;
     std::vector<Correspondence> found, searched;
+    MapScratch scratch;
     for (int scan = 0; scan < 40; scan++)
     {
         const std::vector<MapPoint> points = seen(1000, 0.01);
         mature.insert(points, single);
         all.insert(all.end(), points.begin(), points.end());
-        mature.match(seen(300, 0), found, single);
     }
     young.insert(all, single);
     const std::vector<MapPoint> queries = seen(500, 0);
-    mature.match(queries, found, single);
-    young.match(queries, searched, single);
+    mature.match(queries, found, scratch, single);
+    young.match(queries, searched, scratch, single);
     double error = 0, full_error = 0;
     for (std::size_t i = 0; i < queries.size(); i++)
     {
@@ -214,7 +216,8 @@ TEST(OctreeMap, DoesNotMatchTheTopOfAFloorWithItsUnderside)
     const auto planesFrom = [&](const Vector3d& sensor)
     {
         std::vector<Correspondence> found;
-        map.match(seenFrom(queries, sensor), found, single);
+        MapScratch scratch;
+        map.match(seenFrom(queries, sensor), found, scratch, single);
         return std::count_if(
             found.begin(), found.end(),
             [](const Correspondence& c) { return c.surface == Surface::Plane; });
@@ -352,9 +355,10 @@ TEST(OctreeMap, KnowsWhatItKnewWhenItsKeysMoveOn)
     for (int i = 0; i < 100; i++) queries.push_back({patch.at(random, 0.8), FeatureKind::Any});
     Executor executor(1);
     std::vector<Correspondence> before, after;
-    map.match(queries, before, executor);
+    MapScratch scratch;
+    map.match(queries, before, scratch, executor);
     map.slide({2056, 0, 0});  // beyond half of the keys
-    map.match(queries, after, executor);
+    map.match(queries, after, scratch, executor);
     EXPECT_NEAR(static_cast<double>(map.size()), static_cast<double>(size), 20);
     for (std::size_t i = 0; i < queries.size(); i++)
     {

@@ -113,7 +113,7 @@ TEST_F(PoseSearchTest, FindsWhereAScanWasSeen)
     NavState before;
     before.T_world_imu = {expSO3({0, 0, 0.5}) * truth.R, truth.p + Vector3d(-1.2, 0.5, 0.1)};
     before.v_world = {0.8, 0, 0};
-    const PoseSearch search(seen, map, executor);
+    PoseSearch search(seen, map, executor);
     const Vector3d up = truth.R.transpose() * kGravityWorld;
     const std::vector<Pose> best = search.bestOf(PoseSearch::posesAfter(1, before, up), 5);
     ASSERT_EQ(best.size(), 5u);
@@ -126,7 +126,7 @@ TEST_F(PoseSearchTest, FindsWhereAScanWasSeen)
 
 TEST_F(PoseSearchTest, NothingIsExplainedWhereThereIsNoMap)
 {
-    const PoseSearch search(seen, map, executor);
+    PoseSearch search(seen, map, executor);
     EXPECT_EQ(search.explained({truth.R, truth.p + Vector3d(500, 0, 0)}), 0);
     EXPECT_EQ(PoseSearch({}, map, executor).explained(truth), 0);
 }

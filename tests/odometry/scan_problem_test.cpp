@@ -64,7 +64,8 @@ struct Scene3d
         std::vector<MapPoint> queries;
         for (const Feature& f : features.points)
             queries.push_back({truePoint(scan.stamp + f.offset, f.position), f.kind});
-        map.match(queries, correspondences, executor);
+        MapScratch scratch;
+        map.match(queries, correspondences, scratch, executor);
     }
 
     Vector3d truePoint(Time t, const Eigen::Vector3f& p) const

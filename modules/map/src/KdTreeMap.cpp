@@ -64,7 +64,7 @@ void KdTreeMap::slide(const Vector3d& center_world)
 
 void KdTreeMap::match(
     const std::vector<MapPoint>& queries, std::vector<Correspondence>& correspondences,
-    Executor& executor) const
+    MapScratch& /*scratch*/, Executor& executor) const
 {
     correspondences.assign(queries.size(), {});
     executor.forChunks(

@@ -34,9 +34,10 @@ OctreeMap::OctreeMap(const OctreeMap& other)
     : Map(other),
       config(other.config),
       tree_(std::make_unique<StatisticsTree>(*other.tree_)),
-      levels_(other.levels_.size()),  // without the cache, which names the other's nodes
+      levels_(other.levels_),
       range_noise_(other.range_noise_),
       insertions_(other.insertions_),
+      state_(std::make_shared<const char>()),
       ripe_(other.ripe_),
       blocks_(other.blocks_),
       last_center_(other.last_center_),
@@ -77,9 +78,9 @@ void OctreeMap::clear()
     insertions_ = 0;
     range_noise_ = 0;
     ripe_.clear();
-    lookups_.clear();
     last_center_.setConstant(1e300);
     origin_.setZero();
+    changed();
 }
 
 unsigned OctreeMap::blockDepth() const
@@ -108,6 +109,8 @@ void OctreeMap::insert(const std::vector<MapPoint>& points, Executor& executor)
     for (const std::uint64_t way : ripe) ripe_.insert(ripeKey(StatisticsTree::endOf(way)));
     rememberBlocks(entries_);
     insertions_++;
+    changed();
+    learnRangeNoise(points, executor);
 }
 
 bool OctreeMap::leafOf(const Vector3d& p, octomap::OcTreeKey& leaf) const
@@ -163,7 +166,7 @@ void OctreeMap::slide(const Vector3d& center_world)
 {
     if ((center_world - last_center_).norm() < kBlockSize) return;
     last_center_ = center_world;
-    lookups_.clear();
+    changed();
     ripe_.clear();  // of what may be forgotten; the others tell again
     const double reach = config.window_radius + kBlockSize;
     const auto outside = [&](const octomap::OcTreeKey& key, unsigned depth)
@@ -232,12 +235,30 @@ void OctreeMap::recenter(const Vector3d& center_world)
         leaves.push_back(it->statistics());
     }
     tree_ = std::make_unique<StatisticsTree>(config.leaf_size);
-    levels_ = std::vector<Level>(levels_.size());
+    moveWindows(shift);
     Executor single;
     tree_->add(
         entries, depthOf(config.scales - 1), {},
         [&](const StatisticsTree::Entry& e, PointStatistics& sum) { sum.add(leaves[e.index]); },
         single);
     rememberBlocks(entries);
+}
+
+void OctreeMap::moveWindows(const std::array<int, 3>& shift)
+{
+    for (Level& level : levels_)
+    {
+        KeyTable moved;
+        level.index.forEach(
+            [&](std::uint64_t, std::uint32_t number)
+            {
+                Window& window = level.windows[number];
+                for (std::size_t i = 0; i < 3; i++)
+                    window.corner[i] = static_cast<std::uint16_t>(window.corner[i] - shift[i]);
+                window.places = {};  // the nodes are new
+                moved.insert(cornerOf(window), number);
+            });
+        level.index = std::move(moved);
+    }
 }
 }  // namespace taut

@@ -124,7 +124,7 @@ SweepPath Odometry::estimate(
     ScanResult& result)
 {
     Registration registration(
-        config_, *map_, *solver_, executor_, previous_, motion, features, predicted);
+        config_, *map_, *solver_, scratch_, executor_, previous_, motion, features, predicted);
     ScanProblem& problem = registration.problem();
     LidarFactor::PoseCovariance uncertain = problem.predictedPoseCovariance();
     if (result.with_imu && hasLongGap(motion) && !map_->empty())
@@ -212,6 +212,7 @@ std::vector<Eigen::Vector3f> Odometry::undistorted(
 
 void Odometry::insert(const Scan& scan, const SweepPath& path, ScanResult& result)
 {
+    map_->keep(scratch_);
     map_->slide(previous_.state.T_world_imu.p);
     const std::size_t n = scan.points.size();
     if (n == 0) return;

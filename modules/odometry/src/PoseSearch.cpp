@@ -74,7 +74,7 @@ std::vector<Pose> PoseSearch::posesAfter(
     return poses;
 }
 
-double PoseSearch::explained(const Pose& T_world_imu) const
+double PoseSearch::explained(const Pose& T_world_imu)
 {
     std::vector<MapPoint> queries = scan_;
     for (MapPoint& q : queries)
@@ -83,7 +83,7 @@ double PoseSearch::explained(const Pose& T_world_imu) const
         q.view = T_world_imu.R * q.view;
     }
     std::vector<Correspondence> found;
-    map_.match(queries, found, executor_);
+    map_.match(queries, found, scratch_, executor_);
     double sum = 0;
     for (std::size_t i = 0; i < found.size(); i++)
     {
@@ -98,7 +98,7 @@ double PoseSearch::explained(const Pose& T_world_imu) const
     return sum;
 }
 
-std::vector<Pose> PoseSearch::bestOf(const std::vector<Pose>& poses, std::size_t count) const
+std::vector<Pose> PoseSearch::bestOf(const std::vector<Pose>& poses, std::size_t count)
 {
     std::vector<std::pair<double, std::size_t>> ranked;
     for (std::size_t i = 0; i < poses.size(); i++) ranked.emplace_back(-explained(poses[i]), i);

@@ -54,12 +54,13 @@ bool hasLongGap(const PreintegratedImu& motion)
 }
 
 Registration::Registration(
-    const OdometryConfig& config, const Map& map, const Solver& solver, Executor& executor,
-    const NavPrior& previous, const PreintegratedImu& motion, const Features& features,
-    const SweepPath& path)
+    const OdometryConfig& config, const Map& map, const Solver& solver, MapScratch& scratch,
+    Executor& executor, const NavPrior& previous, const PreintegratedImu& motion,
+    const Features& features, const SweepPath& path)
     : config_(config),
       map_(map),
       solver_(solver),
+      scratch_(scratch),
       executor_(executor),
       before_(previous.state),
       motion_(motion),
@@ -84,7 +85,7 @@ std::string Registration::iterate(LidarFactor::PoseCovariance unexplained, ScanR
             queries_[j] = {
                 world[j], features_.points[j].kind,
                 (problem_.current().T_world_imu.p - world[j]).normalized()};
-        map_.match(queries_, correspondences_, executor_);
+        map_.match(queries_, correspondences_, scratch_, executor_);
         watch.stage(report.times.match);
 
         lidar_.setCorrespondences(correspondences_, path_, unexplained, report.balance);

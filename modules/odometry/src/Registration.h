@@ -15,11 +15,12 @@ bool hasLongGap(const PreintegratedImu& motion);
 class Registration
 {
  public:
-    /** All references are kept but for `path`, the one that is predicted. */
+    /** All references are kept but for `path`, the one that is predicted. `scratch` is of look-ups
+     * in the map. */
     Registration(
-        const OdometryConfig& config, const Map& map, const Solver& solver, Executor& executor,
-        const NavPrior& previous, const PreintegratedImu& motion, const Features& features,
-        const SweepPath& path);
+        const OdometryConfig& config, const Map& map, const Solver& solver, MapScratch& scratch,
+        Executor& executor, const NavPrior& previous, const PreintegratedImu& motion,
+        const Features& features, const SweepPath& path);
 
     ScanProblem& problem() { return problem_; }
 
@@ -45,6 +46,7 @@ class Registration
     const OdometryConfig& config_;
     const Map& map_;
     const Solver& solver_;
+    MapScratch& scratch_;
     Executor& executor_;
     const NavState before_;
     const PreintegratedImu& motion_;

@@ -38,7 +38,7 @@ class KdTreeMap : public Map
 
     void match(
         const std::vector<MapPoint>& queries, std::vector<Correspondence>& correspondences,
-        Executor& executor) const override;
+        MapScratch& scratch, Executor& executor) const override;
     void insert(const std::vector<MapPoint>& points, Executor& executor) override;
 
     /** Forgets once the body has gone a tenth of the window's radius, not at every step. */

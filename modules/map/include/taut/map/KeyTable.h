@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -37,6 +38,21 @@ class KeyTable
         size_ = 0;
         for (const Place& p : old)
             if (p.number != kNone && !leaves(p.key, p.number)) insert(p.key, p.number);
+    }
+
+    /** Calls `visit(key, number)` for every key. */
+    template <class Visit>
+    void forEach(const Visit& visit) const
+    {
+        for (const Place& p : places_)
+            if (p.number != kNone) visit(p.key, p.number);
+    }
+
+    /** Forgets all, and keeps the memory. */
+    void clear()
+    {
+        if (size_ > 0) std::fill(places_.begin(), places_.end(), Place{});
+        size_ = 0;
     }
 
     std::size_t size() const { return size_; }

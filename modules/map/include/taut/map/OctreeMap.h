@@ -41,7 +41,11 @@ struct OctreeMapConfig
  * 2 x 2 x 2 nodes around the node corner nearest to the query, so that no query lies near a
  * window's edge, where a surface would be seen cut in two. A surface seen from one side is not
  * matched with queries seen from the other: both sides of a floor or a wall are surfaces of their
- * own. */
+ * own.
+ *
+ * Windows that points were inserted near the middle of are kept, and insertion alone keeps them up
+ * to date; a window that is not kept is made of the tree when a query asks for it, in the scratch
+ * of the caller. So a match follows from the insertions, not from the queries before. */
 class OctreeMap : public Map
 {
     DEFINE_MRPT_OBJECT(OctreeMap, taut)
@@ -52,8 +56,9 @@ class OctreeMap : public Map
     void configure(ConfigSection& section) override;
     void match(
         const std::vector<MapPoint>& queries, std::vector<Correspondence>& correspondences,
-        Executor& executor) const override;
+        MapScratch& scratch, Executor& executor) const override;
     void insert(const std::vector<MapPoint>& points, Executor& executor) override;
+    void keep(MapScratch& scratch) override;
     void slide(const Vector3d& center_world) override;
     bool empty() const override { return !tree_ || tree_->size() == 0; }
     std::size_t size() const override { return tree_ ? tree_->size() : 0; }
@@ -83,6 +88,12 @@ class OctreeMap : public Map
         double seen = 0;                              //!< points at the last comparison
         std::array<StatisticsTree::Place, 8> places;  //!< of its nodes
 
+        /** Has all of it at hand when it is needed soon. */
+        void prefetch() const
+        {
+            for (std::size_t i = 0; i < sizeof(*this); i += 64)
+                __builtin_prefetch(reinterpret_cast<const char*>(this) + i);
+        }
         /** Has what the comparison needs at hand when it is needed soon. */
         void prefetchPlaces() const
         {
@@ -94,10 +105,16 @@ class OctreeMap : public Map
     class Windows
     {
      public:
+        Windows() = default;
+        Windows(const Windows& other);  //!< without places, which are nodes of the other's tree
+        Windows(Windows&&) = default;
+        Windows& operator=(const Windows&) = delete;
+        Windows& operator=(Windows&&) = default;
         Window& operator[](std::uint32_t i) { return blocks_[i / kBlock][i % kBlock]; }
         const Window& operator[](std::uint32_t i) const { return blocks_[i / kBlock][i % kBlock]; }
         std::uint32_t add();
         void remove(std::uint32_t i) { free_.push_back(i); }
+        void clear();  //!< keeps the memory
 
      private:
         static constexpr std::uint32_t kBlock = 256;
@@ -109,11 +126,15 @@ class OctreeMap : public Map
     {
         KeyTable index;  //!< of the windows, by corner
         Windows windows;
+
+        std::uint32_t at(std::uint64_t corner);  //!< the number of a window, made if it is new
     };
 
     /** The cube of half a leaf that holds a point, from the corner of all that keys name; {} where
      * keys do not reach. It tells the nearest corners of nodes of every size. */
     using Cell = std::array<std::uint32_t, 3>;
+
+    static constexpr std::uint32_t kNoWindow = KeyTable::kNone;
 
     /** The search of one query: from the largest window down. */
     struct Search
@@ -125,58 +146,85 @@ class OctreeMap : public Map
         Cell cell{};                          //!< of the query
         FeatureKind kind = FeatureKind::Any;  //!< of the query
         Vector3d view = Vector3d::Zero();     //!< of the query
+        double view_reach = 1e300;  //!< by which that may change before a window changes sides
     };
-    /** Where a query of the last match() looked: iterations seldom leave a window. */
+    /** Where a query looked at a level: iterations seldom leave a window. */
     struct Lookup
     {
         std::uint64_t corner = 0;
-        std::uint32_t window = kNoWindow;
+        std::uint32_t window = kNoWindow;  //!< of the map, or with kAsked one of the scratch
     };
-    static constexpr std::uint32_t kNoWindow = KeyTable::kNone;
+    static constexpr std::uint32_t kAsked = 0x80000000;
+
+    /** Windows that the map does not keep, or not as they look now. */
+    struct Asked : Level
+    {
+        std::vector<std::uint32_t> kept;  //!< their numbers in the map; kNoWindow: new ones
+
+        void clear();  //!< keeps the memory
+    };
+
+    /** The last match() of a caller: good for the next one until the map changes. */
+    struct Scratch
+    {
+        std::shared_ptr<const char> state;  //!< of the map; held, so that no other one is like it
+        std::vector<Search> searches;
+        std::vector<Lookup> lookups;  //!< a query and level each
+        std::vector<Asked> asked;     //!< by level
+
+        Lookup& lookup(std::size_t query, int level)
+        {
+            return lookups[query * asked.size() + static_cast<std::size_t>(level)];
+        }
+    };
 
     template <class Outside>
     void forgetWindows(const Outside& outside);
+    void moveWindows(const std::array<int, 3>& shift);
+    void keep(Scratch& scratch);
+    void changed() { state_ = std::make_shared<const char>(); }
     void recenter(const Vector3d& center_world);
     Cell cellOf(const Vector3d& p) const;
     static std::uint64_t cornerOf(const Cell& cell, int level);
-    static std::uint32_t windowAt(Level& level, std::uint64_t corner);
+    static std::uint64_t cornerOf(const Window& window);
     void remember(const octomap::OcTreeKey& leaf);
     void rememberBlocks(const StatisticsTree::Entries& sorted);
     bool isStale(const Window& window) const;
+    void refreshAll(
+        Windows& windows, const std::vector<std::uint32_t>& stale, int level,
+        Executor& executor) const;
     void locate(Window& window, int level) const;
     void refresh(Window& window, int level) const;
     void schedule(Window& window, double count) const;
     void compute(Window& window, int level, const PointStatistics& statistics) const;
-    void findWindows(int level) const;
-    void refreshStale(int level, Executor& executor) const;
+    void prepare(Scratch& scratch, std::size_t queries) const;
+    void search(const std::vector<MapPoint>& queries, Scratch& scratch, Executor& executor) const;
+    void findWindows(Scratch& scratch, int level) const;
+    void askForWindows(Scratch& scratch, int level, Executor& executor) const;
+    const Window& windowOf(const Scratch& scratch, int level, std::uint32_t number) const;
     Search searchOf(const MapPoint& query) const;
-    bool isSettled(const MapPoint& query, std::size_t i) const;
-    void advance(Search& search, const MapPoint& query, int level) const;
+    bool isSettled(const MapPoint& query, Scratch& scratch, std::size_t i) const;
+    void advance(Search& search, const Scratch& scratch, const MapPoint& query, int level) const;
     Correspondence planeAt(const Vector3d& query, const Window& window) const;
     Correspondence lineAt(const Vector3d& query, const Window& window) const;
-    Lookup& lookup(std::size_t query, int level) const
-    {
-        return lookups_[query * levels_.size() + static_cast<std::size_t>(level)];
-    }
+    static bool isOnSideOf(const Window& window, Search& search);
     bool isThinAsNoise(const Window& window) const;
-    void learnRangeNoise() const;
+    void learnRangeNoise(const std::vector<MapPoint>& points, Executor& executor);
     bool isPlane(const Window& window, int level, double thickness2) const;
     bool isLine(const Window& window) const;
-    static bool isOnSideOf(const Window& window, const MapPoint& query);
     unsigned blockDepth() const;
     bool leafOf(const Vector3d& p, octomap::OcTreeKey& leaf) const;
     StatisticsTree::Entry entryOf(const Vector3d& p, std::uint32_t index) const;
     std::uint32_t weightOf(const octomap::OcTreeKey& leaf, std::uint32_t point) const;
 
     std::unique_ptr<StatisticsTree> tree_;
-    StatisticsTree::Entries entries_;    // of the last insertion; kept, since fresh memory is slow
-    mutable std::vector<Level> levels_;  // a cache: its content follows from the tree
-    // The last match(): good for the next one until the map changes.
-    mutable std::vector<Search> searches_;
-    mutable std::vector<Lookup> lookups_;  // a query and level each
-    mutable std::uint32_t lookups_insertion_ = 0;
-    mutable double range_noise_ = 0;  //!< [m] as the planes of the last match() show it
+    std::vector<Level> levels_;  // of windows that are kept
+    double range_noise_ = 0;     //!< [m] as the planes of the last points show it
     std::uint32_t insertions_ = 0;
+    std::shared_ptr<const char> state_;  // another one after every change
+    // Of the last insertion; kept, since fresh memory is slow.
+    StatisticsTree::Entries entries_;
+    Scratch learning_;
     VoxelSet ripe_;  //!< nodes that hold enough to take a share of what comes, for all of it
     tsl::robin_set<std::uint64_t, VoxelHash> blocks_;  // coarse nodes that exist, for slide()
     Vector3d last_center_ = Vector3d::Constant(1e300);

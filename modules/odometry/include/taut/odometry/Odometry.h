@@ -102,6 +102,7 @@ class Odometry
     /** Shares of late: of the features that are matched and explained, and of the matches that are.
      * 0: not known yet. */
     double usual_explained_ = 0, usual_fit_ = 0;
+    MapScratch scratch_;              // of look-ups in the map
     std::vector<MapPoint> inserted_;  // with the last scan; kept, since fresh memory is slow
 };
 }  // namespace taut

@@ -25,14 +25,15 @@ class PoseSearch
         double gap, const NavState& before, const Vector3d& specific_force);
 
     /** The best so many of the poses, best first; two of them are not nearly the same. */
-    std::vector<Pose> bestOf(const std::vector<Pose>& poses, std::size_t count) const;
+    std::vector<Pose> bestOf(const std::vector<Pose>& poses, std::size_t count);
 
     /** How many of the points lie near a surface of the map, each counted by how near. */
-    double explained(const Pose& T_world_imu) const;
+    double explained(const Pose& T_world_imu);
 
  private:
     std::vector<MapPoint> scan_;
     const Map& map_;
+    MapScratch scratch_;
     Executor& executor_;
 };
 }  // namespace taut
