@@ -176,6 +176,41 @@ TEST(OctreeMap, AsThickAsTheNoiseIsThinEnough)
     EXPECT_LE(error, 1.02 * full_error);
 }
 
+TEST(OctreeMap, LearnsTheNoiseFromWhatIsInserted)
+{
+    // Where points are few, small windows of a noisy floor look thinner by chance. A map that knows
+    // the noise does not look at them.
+    OctreeMap mature, young;
+    Random random(6);
+    for (OctreeMap* map : {&mature, &young}) map->config.ripe_points = 1e9;
+    std::vector<MapPoint> all;
+    for (int scan = 0; scan < 60; scan++)
+    {
+        std::vector<MapPoint> points = floorAt(0, 0).planePoints(random, 100, FeatureKind::Any);
+        for (MapPoint& p : points)
+        {
+            p.view = (Vector3d(random.uniform(-2, 2), 0, 2) - p.position).normalized();
+            p.position += 0.03 * random.normal() * p.view;
+        }
+        mature.insert(points, single);
+        all.insert(all.end(), points.begin(), points.end());
+    }
+    young.insert(all, single);
+    const std::vector<MapPoint> queries(all.begin(), all.begin() + 2000);
+    const auto exactIn = [&](const OctreeMap& map)
+    {
+        std::vector<Correspondence> found;
+        MapScratch scratch;
+        map.match(queries, found, scratch, single);
+        return std::count_if(
+            found.begin(), found.end(),
+            [](const Correspondence& c)
+            { return std::abs(c.direction.z()) > std::cos(0.5 * M_PI / 180); });
+    };
+    EXPECT_GT(exactIn(mature), 0.995 * 2000);
+    EXPECT_LT(exactIn(young), 0.985 * 2000);
+}
+
 TEST(OctreeMap, NearAStepSigmaTellsHowFarTheSurfaceMayBe)
 {
     OctreeMap step;

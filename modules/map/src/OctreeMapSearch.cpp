@@ -8,10 +8,11 @@ namespace taut
 {
 namespace
 {
-constexpr double kThin = 0.1;             // quantile of the planes that tells the noise
-constexpr std::uint32_t kYoung = 30;      // insertions: a young map is as thick as it is wrong
-constexpr std::size_t kLearntFrom = 200;  // points of an insertion, about
-constexpr double kGrazing = 0.05;         // cosine to the normal
+constexpr double kThin = 0.1;                // quantile of the planes that tells the noise
+constexpr std::uint32_t kYoung = 30;         // insertions: a young map is as thick as it is wrong
+constexpr std::uint32_t kLearningPause = 4;  // insertions, of which it learns from one
+constexpr std::size_t kLearntFrom = 200;     // points of an insertion, about
+constexpr double kGrazing = 0.05;            // cosine to the normal
 }  // namespace
 
 void OctreeMap::match(
@@ -36,17 +37,23 @@ void OctreeMap::search(
     const std::vector<MapPoint>& queries, Scratch& scratch, Executor& executor) const
 {
     prepare(scratch, queries.size());
-    for (std::size_t i = 0; i < queries.size(); i++)
-        if (!isSettled(queries[i], scratch, i)) scratch.searches[i] = searchOf(queries[i]);
+    std::vector<std::uint32_t>& active = scratch.active;
+    active.clear();
+    for (std::uint32_t i = 0; i < queries.size(); i++)
+    {
+        if (isSettled(queries[i], scratch, i)) continue;
+        scratch.searches[i] = searchOf(queries[i]);
+        if (scratch.searches[i].active) active.push_back(i);
+    }
+    const auto ended = [&](std::uint32_t i) { return !scratch.searches[i].active; };
     for (int level = config.scales - 1; level >= 0; level--)
     {
         findWindows(scratch, level);
         askForWindows(scratch, level, executor);
-        for (std::size_t i = 0; i < queries.size(); i++)
-            if (scratch.searches[i].active)
-                advance(scratch.searches[i], scratch, queries[i], level);
+        for (const std::uint32_t i : active)
+            advance(scratch.searches[i], scratch, queries[i], level);
+        active.erase(std::remove_if(active.begin(), active.end(), ended), active.end());
     }
-    for (Search& s : scratch.searches) s.active = false;
 }
 
 void OctreeMap::prepare(Scratch& scratch, std::size_t queries) const
@@ -58,8 +65,11 @@ void OctreeMap::prepare(Scratch& scratch, std::size_t queries) const
         for (Asked& asked : scratch.asked) asked.clear();
         scratch.state = state_;
     }
-    scratch.lookups.assign(queries * levels_.size(), {});
-    scratch.searches.assign(queries, {});
+    // Nothing else is written: filling all of it anew would take some percent of a match.
+    scratch.epoch++;
+    scratch.lookups.resize(queries * levels_.size());
+    scratch.searches.resize(queries);
+    for (Search& search : scratch.searches) search.last_level = kNoLevel;
 }
 
 OctreeMap::Search OctreeMap::searchOf(const MapPoint& query) const
@@ -75,7 +85,7 @@ OctreeMap::Search OctreeMap::searchOf(const MapPoint& query) const
 bool OctreeMap::isSettled(const MapPoint& query, Scratch& scratch, std::size_t i) const
 {
     const Search& search = scratch.searches[i];
-    if (search.kind != query.kind || search.last_level >= config.scales) return false;
+    if (search.kind != query.kind || search.last_level == kNoLevel) return false;
     if (!((search.view - query.view).squaredNorm() < search.view_reach * search.view_reach))
         return false;
     const Cell cell = cellOf(query.position);
@@ -88,20 +98,18 @@ void OctreeMap::findWindows(Scratch& scratch, int l) const
 {
     // Each step waits for memory: it begins for all queries before the next one needs it.
     const Level& kept = levels_[static_cast<std::size_t>(l)];
-    for (std::size_t i = 0; i < scratch.searches.size(); i++)
+    for (const std::uint32_t i : scratch.active)
     {
-        if (!scratch.searches[i].active) continue;
         const std::uint64_t corner = cornerOf(scratch.searches[i].cell, l);
         Lookup& last = scratch.lookup(i, l);
-        if (last.corner != corner) last = {corner, kNoWindow};
+        if (last.corner != corner || last.epoch != scratch.epoch)
+            last = {corner, kNoWindow, scratch.epoch};
         if (last.window == kNoWindow) kept.index.prefetch(corner);
     }
-    for (std::size_t i = 0; i < scratch.searches.size(); i++)
+    for (const std::uint32_t i : scratch.active)
     {
-        Search& search = scratch.searches[i];
-        if (!search.active) continue;
         Lookup& last = scratch.lookup(i, l);
-        search.last_level = static_cast<std::int8_t>(l);
+        scratch.searches[i].last_level = static_cast<std::int8_t>(l);
         if (last.window == kNoWindow) last.window = kept.index.find(last.corner);
         if (last.window != kNoWindow) __builtin_prefetch(&windowOf(scratch, l, last.window));
     }
@@ -111,29 +119,52 @@ void OctreeMap::askForWindows(Scratch& scratch, int l, Executor& executor) const
 {
     const Windows& kept = levels_[static_cast<std::size_t>(l)].windows;
     Asked& asked = scratch.asked[static_cast<std::size_t>(l)];
-    std::vector<std::uint32_t> made;
-    for (std::size_t i = 0; i < scratch.searches.size(); i++)
+    const auto known = static_cast<std::uint32_t>(asked.kept.size());
+    for (const std::uint32_t i : scratch.active)
     {
-        if (!scratch.searches[i].active) continue;
         Lookup& last = scratch.lookup(i, l);
-        const bool is_kept = last.window != kNoWindow;
-        if (!is_kept || ((last.window & kAsked) == 0 && isStale(kept[last.window])))
+        if (!isDue(kept, last.window)) continue;
+        const std::uint32_t number = asked.at(last.corner);
+        if (number == asked.kept.size())
         {
-            const std::uint32_t number = asked.at(last.corner);
-            if (number == asked.kept.size())
-            {
-                asked.kept.push_back(last.window);
-                if (is_kept) asked.windows[number] = kept[last.window];
-                Window& window = asked.windows[number];
-                window.age = window.checked == 0 ? 0 : insertions_ - window.checked;
-                window.checked = insertions_;
-                made.push_back(number);
-            }
-            last.window = number | kAsked;
+            asked.kept.push_back(last.window);
+            if (last.window != kNoWindow) kept[last.window].prefetchCheck();
         }
-        scratch.searches[i].window = last.window;
+        last.window = number | kAsked;
+    }
+    makeAsked(asked, known, l, executor);
+    for (const std::uint32_t i : scratch.active)
+    {
+        const std::uint32_t found = scratch.lookup(i, l).window;
+        scratch.searches[i].window = (found & kAsked) != 0 ? asked.shown[found & ~kAsked] : found;
+    }
+}
+
+bool OctreeMap::isDue(const Windows& kept, std::uint32_t number) const
+{
+    return number == kNoWindow || ((number & kAsked) == 0 && isStale(kept[number]));
+}
+
+void OctreeMap::makeAsked(Asked& asked, std::uint32_t first, int l, Executor& executor) const
+{
+    const Windows& kept = levels_[static_cast<std::size_t>(l)].windows;
+    std::vector<std::uint32_t> made;
+    for (auto number = first; number < asked.kept.size(); number++)
+    {
+        Window& window = asked.windows[number];
+        if (asked.kept[number] != kNoWindow) window.takeCheck(kept[asked.kept[number]]);
+        window.age = window.checked == 0 ? 0 : insertions_ - window.checked;
+        window.checked = insertions_;
+        made.push_back(number);
     }
     refreshAll(asked.windows, made, l, executor);
+    for (const std::uint32_t number : made)
+    {
+        const std::uint32_t before = asked.kept[number];
+        const bool is_same =
+            before != kNoWindow && kept[before].count == asked.windows[number].count;
+        asked.shown.push_back(is_same ? before : number | kAsked);
+    }
 }
 
 const OctreeMap::Window& OctreeMap::windowOf(
@@ -197,7 +228,7 @@ bool OctreeMap::isThinAsNoise(const Window& w) const
 void OctreeMap::learnRangeNoise(const std::vector<MapPoint>& points, Executor& executor)
 {
     // Noise along the rays makes a plane as thick as it is, times the cosine of view and normal.
-    if (insertions_ < kYoung || empty()) return;
+    if (insertions_ < kYoung || insertions_ % kLearningPause != 0 || empty()) return;
     std::vector<MapPoint> sample;
     const std::size_t stride = std::max<std::size_t>(1, points.size() / kLearntFrom);
     for (std::size_t i = 0; i < points.size(); i += stride) sample.push_back(points[i]);

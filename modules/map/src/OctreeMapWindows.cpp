@@ -29,22 +29,14 @@ OctreeMap::Windows::Windows(const Windows& other) : size_(other.size_), free_(ot
 
 std::uint32_t OctreeMap::Windows::add()
 {
-    std::uint32_t i = size_;
-    if (free_.empty())
+    if (!free_.empty())
     {
-        if (size_++ == kBlock * blocks_.size())
-        {
-            blocks_.push_back(std::make_unique<Window[]>(kBlock));
-            return i;
-        }
-    }
-    else
-    {
-        i = free_.back();
+        const std::uint32_t i = free_.back();
         free_.pop_back();
+        return i;
     }
-    (*this)[i] = {};
-    return i;
+    if (size_ == kBlock * blocks_.size()) blocks_.push_back(std::make_unique<Window[]>(kBlock));
+    return size_++;
 }
 
 void OctreeMap::Windows::clear()
@@ -78,17 +70,30 @@ void OctreeMap::Asked::clear()
     index.clear();
     windows.clear();
     kept.clear();
+    shown.clear();
 }
 
 std::uint32_t OctreeMap::Level::at(std::uint64_t corner)
 {
-    std::uint32_t window = index.find(corner);
-    if (window != kNoWindow) return window;
-    window = windows.add();
-    index.insert(corner, window);
+    std::uint32_t number = index.find(corner);
+    if (number != kNoWindow) return number;
+    number = windows.add();
+    index.insert(corner, number);
     const octomap::OcTreeKey key = unpack(corner);
-    windows[window].corner = {key[0], key[1], key[2]};
-    return window;
+    windows[number] = {};
+    windows[number].corner = {key[0], key[1], key[2]};
+    return number;
+}
+
+void OctreeMap::Level::put(const Window& window)
+{
+    std::uint32_t number = index.find(cornerOf(window));
+    if (number == kNoWindow)
+    {
+        number = windows.add();
+        index.insert(cornerOf(window), number);
+    }
+    windows[number] = window;
 }
 
 void OctreeMap::keep(MapScratch& scratch)
@@ -103,13 +108,20 @@ void OctreeMap::keep(Scratch& scratch)
     {
         Level& level = levels_[l];
         const Asked& asked = scratch.asked[l];
-        for (const std::uint32_t number : asked.kept)
-            if (number != kNoWindow) level.windows[number].prefetch();
+        for (std::uint32_t i = 0; i < asked.kept.size(); i++)
+            if (asked.kept[i] != kNoWindow)
+                level.windows[asked.kept[i]].prefetchCheck();
+            else
+                level.index.prefetch(cornerOf(asked.windows[i]));
         for (std::uint32_t i = 0; i < asked.kept.size(); i++)
         {
             const Window& window = asked.windows[i];
-            const std::uint32_t number = asked.kept[i];
-            level.windows[number != kNoWindow ? number : level.at(cornerOf(window))] = window;
+            if (asked.kept[i] == kNoWindow)
+                level.put(window);
+            else if (asked.shown[i] == asked.kept[i])
+                level.windows[asked.kept[i]].takeCheck(window);
+            else
+                level.windows[asked.kept[i]] = window;
         }
     }
     scratch.state.reset();

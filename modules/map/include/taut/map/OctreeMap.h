@@ -43,9 +43,10 @@ struct OctreeMapConfig
  * matched with queries seen from the other: both sides of a floor or a wall are surfaces of their
  * own.
  *
- * Windows that points were inserted near the middle of are kept, and insertion alone keeps them up
- * to date; a window that is not kept is made of the tree when a query asks for it, in the scratch
- * of the caller. So a match follows from the insertions, not from the queries before. */
+ * A window is made of the tree when a query asks for it, in the scratch of the caller, and so is
+ * one that the map keeps but that is due to be compared with the tree. The map takes them over in
+ * keep(): its callers decide which windows are kept, and since when. What is kept may lag by a
+ * fifth of its points. The noise along the rays is learnt from the points that are inserted. */
 class OctreeMap : public Map
 {
     DEFINE_MRPT_OBJECT(OctreeMap, taut)
@@ -88,16 +89,22 @@ class OctreeMap : public Map
         double seen = 0;                              //!< points at the last comparison
         std::array<StatisticsTree::Place, 8> places;  //!< of its nodes
 
-        /** Has all of it at hand when it is needed soon. */
-        void prefetch() const
+        /** Has what the comparison with the tree needs at hand when it is needed soon. */
+        void prefetchCheck() const
         {
-            for (std::size_t i = 0; i < sizeof(*this); i += 64)
-                __builtin_prefetch(reinterpret_cast<const char*>(this) + i);
-        }
-        /** Has what the comparison needs at hand when it is needed soon. */
-        void prefetchPlaces() const
-        {
+            __builtin_prefetch(&age);
             for (std::size_t i = 0; i < places.size(); i += 4) __builtin_prefetch(&places[i]);
+        }
+        /** Takes what another one knows of the comparison, without what its points look like. */
+        void takeCheck(const Window& other)
+        {
+            count = other.count;
+            checked = other.checked;
+            patience = other.patience;
+            age = other.age;
+            corner = other.corner;
+            seen = other.seen;
+            places = other.places;
         }
     };
     /** Windows by number. They stay where they are: moving them to a larger array would touch as
@@ -112,7 +119,7 @@ class OctreeMap : public Map
         Windows& operator=(Windows&&) = default;
         Window& operator[](std::uint32_t i) { return blocks_[i / kBlock][i % kBlock]; }
         const Window& operator[](std::uint32_t i) const { return blocks_[i / kBlock][i % kBlock]; }
-        std::uint32_t add();
+        std::uint32_t add();  //!< one that has to be filled
         void remove(std::uint32_t i) { free_.push_back(i); }
         void clear();  //!< keeps the memory
 
@@ -128,6 +135,7 @@ class OctreeMap : public Map
         Windows windows;
 
         std::uint32_t at(std::uint64_t corner);  //!< the number of a window, made if it is new
+        void put(const Window& window);          //!< in place of the one that is there, if any
     };
 
     /** The cube of half a leaf that holds a point, from the corner of all that keys name; {} where
@@ -135,13 +143,14 @@ class OctreeMap : public Map
     using Cell = std::array<std::uint32_t, 3>;
 
     static constexpr std::uint32_t kNoWindow = KeyTable::kNone;
+    static constexpr std::int8_t kNoLevel = 127;
 
     /** The search of one query: from the largest window down. */
     struct Search
     {
         std::uint32_t best = kNoWindow, window = kNoWindow;
         std::int8_t best_level = -1;
-        std::int8_t last_level = 127;  //!< the last one it looked at
+        std::int8_t last_level = kNoLevel;  //!< the last one it looked at
         bool active = true, line = false;
         Cell cell{};                          //!< of the query
         FeatureKind kind = FeatureKind::Any;  //!< of the query
@@ -153,13 +162,15 @@ class OctreeMap : public Map
     {
         std::uint64_t corner = 0;
         std::uint32_t window = kNoWindow;  //!< of the map, or with kAsked one of the scratch
+        std::uint32_t epoch = 0;           //!< of the scratch when it looked there
     };
     static constexpr std::uint32_t kAsked = 0x80000000;
 
     /** Windows that the map does not keep, or not as they look now. */
     struct Asked : Level
     {
-        std::vector<std::uint32_t> kept;  //!< their numbers in the map; kNoWindow: new ones
+        std::vector<std::uint32_t> kept;   //!< their numbers in the map; kNoWindow: new ones
+        std::vector<std::uint32_t> shown;  //!< in their place: those of the map that look the same
 
         void clear();  //!< keeps the memory
     };
@@ -168,9 +179,11 @@ class OctreeMap : public Map
     struct Scratch
     {
         std::shared_ptr<const char> state;  //!< of the map; held, so that no other one is like it
+        std::uint32_t epoch = 0;            //!< what is of an earlier one counts no more
         std::vector<Search> searches;
-        std::vector<Lookup> lookups;  //!< a query and level each
-        std::vector<Asked> asked;     //!< by level
+        std::vector<std::uint32_t> active;  //!< those that go on
+        std::vector<Lookup> lookups;        //!< a query and level each
+        std::vector<Asked> asked;           //!< by level
 
         Lookup& lookup(std::size_t query, int level)
         {
@@ -201,6 +214,8 @@ class OctreeMap : public Map
     void search(const std::vector<MapPoint>& queries, Scratch& scratch, Executor& executor) const;
     void findWindows(Scratch& scratch, int level) const;
     void askForWindows(Scratch& scratch, int level, Executor& executor) const;
+    bool isDue(const Windows& kept, std::uint32_t number) const;
+    void makeAsked(Asked& asked, std::uint32_t first, int level, Executor& executor) const;
     const Window& windowOf(const Scratch& scratch, int level, std::uint32_t number) const;
     Search searchOf(const MapPoint& query) const;
     bool isSettled(const MapPoint& query, Scratch& scratch, std::size_t i) const;
