@@ -23,8 +23,7 @@ namespace
 std::shared_ptr<GraphOptimizer> makeOptimizer(const std::string& name, const std::string& yaml = "")
 {
     registerGraphOptimizers();
-    ConfigSection section(
-        yaml.empty() ? YamlNode() : parseYaml(yaml), "graph");
+    ConfigSection section(yaml.empty() ? YamlNode() : parseYaml(yaml), "graph");
     auto optimizer = createPlugin<GraphOptimizer>(name);
     optimizer->configure(section);
     section.rejectUnknown();
