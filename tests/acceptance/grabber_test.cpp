@@ -97,7 +97,7 @@ class RawlogGrabber : public testing::Test
 TEST_F(RawlogGrabber, WritesEveryReturnOfAVlp16)
 {
     if (!replay("vlp16_5hz", {{"pose_z", "1.5"}, {"lidar_label", "TOP"}}))
-        GTEST_SKIP() << "vlp16_5hz.pcap is absent";
+        return skipWithout("vlp16_5hz.pcap");
     EXPECT_THAT(run_.output, HasSubstr("all of its 19 scans and 0 IMU samples are written"));
     EXPECT_EQ(warnings_, "");
     ASSERT_EQ(scans_.size(), facts_["zero_crossings"].get<std::size_t>() + 1);
@@ -111,13 +111,14 @@ TEST_F(RawlogGrabber, WritesEveryReturnOfAVlp16)
     const Trajectory trajectory = readTum(folder_ / "out/trajectory.tum");
     ASSERT_EQ(trajectory.size(), 19U);
     for (const StampedPose& pose : trajectory)  // the sensor is on its stand
-        EXPECT_LT((pose.T_world_imu.p - trajectory[0].T_world_imu.p).norm(), 0.2);
+        EXPECT_LT(
+            (pose.T_world_imu.p - trajectory[0].T_world_imu.p).norm(), 0.2);
 }
 
 TEST_F(RawlogGrabber, StampsAsTheCapturingComputerDidWhereTold)
 {
     if (!replay("vlp16_gps", {{"capture_clock", "true"}, {"speed", "0"}}))
-        GTEST_SKIP() << "vlp16_gps.pcap is absent";
+        return skipWithout("vlp16_gps.pcap");
     ASSERT_EQ(scans_.size(), facts_["zero_crossings"].get<std::size_t>() + 1);
     EXPECT_EQ(progress_.points, facts_["valid_returns_total"]);
     EXPECT_NEAR(toSeconds(scans_[0].stamp), facts_["pcap_time_first"].get<double>(), 0.002);
@@ -125,8 +126,7 @@ TEST_F(RawlogGrabber, StampsAsTheCapturingComputerDidWhereTold)
 
 TEST_F(RawlogGrabber, WritesEveryFrameAndSampleOfAnOuster)
 {
-    if (!replay("ouster_os1_128", {{"speed", "0"}}))
-        GTEST_SKIP() << "ouster_os1_128.pcap is absent";
+    if (!replay("ouster_os1_128", {{"speed", "0"}})) return skipWithout("ouster_os1_128.pcap");
     EXPECT_THAT(run_.output, HasSubstr("all of its 3 scans and 30 IMU samples are written"));
     const auto& frames = facts_["frames"];
     ASSERT_EQ(scans_.size(), frames.size());
@@ -150,7 +150,7 @@ TEST_F(RawlogGrabber, WritesEveryFrameAndSampleOfAnOuster)
 TEST_F(RawlogGrabber, SaysSoWhereTheCaptureIsCutOff)
 {
     const fs::path pcap = dataFolder() / "pcap/vlp16_gps.pcap";
-    if (!fs::exists(pcap)) GTEST_SKIP() << "vlp16_gps.pcap is absent";
+    if (!fs::exists(pcap)) return skipWithout("vlp16_gps.pcap");
     const std::string cut = folder_ / "cut.pcap";
     fs::copy_file(pcap, cut);
     fs::permissions(cut, fs::perms::owner_all);
@@ -165,8 +165,7 @@ TEST_F(RawlogGrabber, SaysSoWhereTheCaptureIsCutOff)
 // What taut-info says of it is what it says of the same capture imported.
 TEST_F(RawlogGrabber, WritesWhatTautImportWrites)
 {
-    if (!replay("ouster_os1_128", {{"speed", "0"}}))
-        GTEST_SKIP() << "ouster_os1_128.pcap is absent";
+    if (!replay("ouster_os1_128", {{"speed", "0"}})) return skipWithout("ouster_os1_128.pcap");
     const std::string imported = folder_ / "imported.log";
     const fs::path pcap = dataFolder() / "pcap/ouster_os1_128.pcap";
     ASSERT_EQ(runProgram(TAUT_IMPORT, pcap.string() + " -o " + imported).exit_code, 0);

@@ -36,19 +36,19 @@ class Recording : public testing::Test
 
 TEST_F(Recording, OfAViolentMotionIsFollowedToMillimetres)
 {
-    if (!run("hall_violent")) GTEST_SKIP() << "hall_violent.rawlog is absent";
+    if (!run("hall_violent")) return skipWithout("hall_violent.rawlog");
     EXPECT_LT(errorOf("hall_violent"), 0.003);  // measured: 0.8 mm
 }
 
 TEST_F(Recording, OfARealHandheldImuIsFollowedToMillimetres)
 {
-    if (!run("handheld_real_imu")) GTEST_SKIP() << "handheld_real_imu.rawlog is absent";
+    if (!run("handheld_real_imu")) return skipWithout("handheld_real_imu.rawlog");
     EXPECT_LT(errorOf("handheld_real_imu"), 0.004);  // measured: 1.6 mm
 }
 
 TEST_F(Recording, OfACarWithoutImuMovesOneMetreAScan)
 {
-    if (!run("street_hdl64")) GTEST_SKIP() << "street_hdl64.rawlog is absent";
+    if (!run("street_hdl64")) return skipWithout("street_hdl64.rawlog");
     const Trajectory car = readTum(trajectory_);
     ASSERT_GE(car.size(), 20U);
     for (std::size_t i = 1; i < car.size(); i++)
@@ -61,7 +61,7 @@ TEST_F(Recording, OfACarWithoutImuMovesOneMetreAScan)
 
 TEST_F(Recording, OfATripodTurnsInPlace)
 {
-    if (!run("tripod_vlp16_imu")) GTEST_SKIP() << "tripod_vlp16_imu.rawlog is absent";
+    if (!run("tripod_vlp16_imu")) return skipWithout("tripod_vlp16_imu.rawlog");
     const Trajectory tripod = readTum(trajectory_);
     ASSERT_GE(tripod.size(), 90U);
     double farthest = 0;

@@ -41,7 +41,7 @@ class AVelodyneRecording : public ACapture, public testing::WithParamInterface<c
 
 TEST_P(AVelodyneRecording, HasTheReturnsRevolutionsAndTimesOfItsFacts)
 {
-    if (!import(GetParam())) GTEST_SKIP() << GetParam() << ".pcap is absent";
+    if (!import(GetParam())) return skipWithout(GetParam() + std::string(".pcap"));
     EXPECT_EQ(all_.packet_scans.size(), facts_["valid_returns_per_revolution"].size());
     EXPECT_EQ(all_.packet_scans.size(), facts_["zero_crossings"].get<std::size_t>() + 1);
 
@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_F(ACapture, OfAnOusterHasTheFramesTimesAndForcesOfItsFacts)
 {
-    if (!import("ouster_os1_128")) GTEST_SKIP() << "ouster_os1_128.pcap is absent";
+    if (!import("ouster_os1_128")) return skipWithout("ouster_os1_128.pcap");
     const auto& frames = facts_["frames"];
     ASSERT_EQ(all_.scans.size(), frames.size());
     const Duration shift = all_.scans[0].stamp - frames[0]["t_first_ns"].get<Time>();
@@ -140,7 +140,7 @@ TEST_F(ACapture, OfAnOusterHasTheFramesTimesAndForcesOfItsFacts)
 TEST(AKitti360Drive, GetsTheTimesOfAnIndependentConversionFromTheAzimuth)
 {
     const auto log = dataFolder() / "street_hdl64.rawlog";
-    if (!std::filesystem::exists(log)) GTEST_SKIP() << "street_hdl64.rawlog is absent";
+    if (!std::filesystem::exists(log)) return skipWithout("street_hdl64.rawlog");
     const TemporaryFolder folder;
     const std::string drive = folder / "data_3d_raw/drive";
     std::filesystem::create_directories(drive + "/velodyne_points/data");

@@ -25,7 +25,7 @@ TEST_P(Recordings, AreReadToTheEndWithoutAWarning)
     const Recording expected = GetParam();
     RawlogConfig config;
     config.path = (dataFolder() / expected.file).string();
-    if (!std::filesystem::exists(config.path)) GTEST_SKIP() << "no recording at " << config.path;
+    if (!std::filesystem::exists(config.path)) return skipWithout(GetParam().file);
     WarningLog warnings;
     RawlogSource source(config, warnings.sink());
     std::size_t points = 0;
