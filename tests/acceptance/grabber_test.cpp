@@ -112,7 +112,7 @@ TEST_F(RawlogGrabber, WritesEveryReturnOfAVlp16)
     ASSERT_EQ(trajectory.size(), 19U);
     for (const StampedPose& pose : trajectory)  // the sensor is on its stand
         EXPECT_LT(
-            (pose.T_world_imu.p - trajectory[0].T_world_imu.p).norm(), 0.2);
+            (pose.T_world_imu.p - trajectory[0].T_world_imu.p).norm(), 0.04);  // measured: 0.025 m
 }
 
 TEST_F(RawlogGrabber, StampsAsTheCapturingComputerDidWhereTold)

@@ -252,9 +252,9 @@ TEST_F(ACapture, OfAVlp16OnItsStandStaysWhereItIs)
 {
     if (!run("vlp16_5hz")) return skipWithout("vlp16_5hz.pcap");
     ASSERT_EQ(trajectory_.size(), 19U);
-    // Without an IMU, so the speed over the first sweep is unknown at first.
+    // Without an IMU, so the speed over the first sweep is unknown at first. Measured: 0.025 m.
     for (const auto& state : trajectory_)
-        EXPECT_LT((state.T_world_imu.p - trajectory_[0].T_world_imu.p).norm(), 0.1);
+        EXPECT_LT((state.T_world_imu.p - trajectory_[0].T_world_imu.p).norm(), 0.04);
 }
 
 // The facts beside the capture say 0.498 m, by another program.

@@ -56,7 +56,7 @@ TEST(ASampleRun, GivesEveryFileAndMillimetres)
 
     EXPECT_EQ(readTum(out + "/trajectory.tum").size(), kScans);
     EXPECT_EQ(readKitti(out + "/trajectory_kitti.txt").size(), kScans);
-    EXPECT_LT(positionError(kSampleTruth, out + "/trajectory.tum"), 0.003);  // measured: 1.1 mm
+    EXPECT_LT(positionError(kSampleTruth, out + "/trajectory.tum"), 0.00125);  // measured: 0.82 mm
 
     EXPECT_EQ(rowsOf(out + "/states.csv"), kScans);
     EXPECT_EQ(rowsOf(out + "/timing.csv"), kScans);
@@ -84,6 +84,6 @@ TEST(ASampleRun, WorksByThePaper)
     const std::string out = folder / "out";
     const ProgramRun run = slam(kSample, out, "-c " TAUT_CONFIG "/paper.yaml");
     ASSERT_EQ(run.exit_code, 0) << run.output;
-    EXPECT_LT(positionError(kSampleTruth, out + "/trajectory.tum"), 0.011);  // measured: 3.8 mm
+    EXPECT_LT(positionError(kSampleTruth, out + "/trajectory.tum"), 0.0074);  // measured: 4.9 mm
 }
 }  // namespace
