@@ -1,10 +1,12 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "PcapWriter.h"
 #include "import_support.h"
 #include "temporary_folder.h"
+#include "velodyne_bytes.h"
 
 namespace taut::test
 {
@@ -70,6 +72,47 @@ TEST_F(AVelodyneCapture, IsCutWhereTheAzimuthWrapsAndKeepsEveryPacket)
         }
         EXPECT_TRUE(received == sent);
         EXPECT_EQ(all.warnings.counts().size(), 0U);
+    }
+}
+
+/** A pcap file of one packet over Ethernet, byte by byte, captured at 1700000001.5 s. */
+std::string capturedByHand()
+{
+    const auto packet = knownPacket();
+    std::string file;
+    const auto put = [&file](std::initializer_list<int> bytes)
+    {
+        for (const int byte : bytes) file.push_back(static_cast<char>(byte));
+    };
+    put({0xd4, 0xc3, 0xb2, 0xa1, 2, 0, 4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff, 0, 0, 1, 0, 0, 0});
+    put({0x01, 0xf1, 0x53, 0x65, 0x20, 0xa1, 0x07, 0});  // 1700000001 s, 500000 us
+    put({0xe0, 0x04, 0, 0, 0xe0, 0x04, 0, 0});           // 1248 bytes
+    put({0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x60, 0x76, 0x88, 0, 0, 1, 8, 0});
+    put({0x45, 0, 0x04, 0xd2, 0, 1, 0x40, 0, 0xff, 17, 0, 0});  // IPv4, 1234 bytes, UDP
+    put({192, 168, 1, 201, 255, 255, 255, 255});
+    put({0x09, 0x40, 0x09, 0x40, 0x04, 0xbe, 0, 0});  // port 2368, 1214 bytes
+    return file.append(packet.begin(), packet.end());
+}
+
+TEST_F(AVelodyneCapture, WrittenByHandHasItsStampAndItsReturns)
+{
+    std::ofstream(path_, std::ios::binary) << capturedByHand();
+    const Imported all = importAll(path_);
+    ASSERT_EQ(all.failure, "");
+    ASSERT_EQ(all.packet_scans.size(), 1U);
+    const PacketScan& scan = all.packet_scans[0];
+    ASSERT_EQ(scan.packets.size(), 1U);
+    EXPECT_EQ(scan.stamp, kStart + 1000 * kMillisecond);  // 13 min 21 s after 22:00 UTC
+    std::vector<velodyne::Return> returns;
+    velodyne::decodePacket(
+        scan.packets[0].data(), velodyne::defaultCalibration(Model::Vlp16), returns);
+    ASSERT_EQ(returns.size(), kKnownReturns.size());
+    for (std::size_t i = 0; i < returns.size(); i++)
+    {
+        const KnownReturn& known = kKnownReturns[i];
+        const Vector3d position(known.x, known.y, known.z);
+        EXPECT_LT((returns[i].position.cast<double>() - position).norm(), 2e-5);
+        EXPECT_EQ(returns[i].intensity, known.intensity);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "pcap_support.h"
 #include "rawlog_support.h"
+#include "velodyne_bytes.h"
 
 namespace taut::test
 {
@@ -141,6 +142,29 @@ Packet onePacket(Model model, double azimuth_step, double range)
     return writer.take().at(0);
 }
 }  // namespace
+
+TEST(VelodyneDecoder, GivesWhatIsKnownOfAPacketWrittenByHand)
+{
+    const auto bytes = knownPacket();
+    std::vector<Return> returns;
+    const PacketInfo info =
+        decodePacket(bytes.data(), defaultCalibration(packetInfo(bytes.data()).model), returns);
+    EXPECT_EQ(info.model, Model::Vlp16);
+    EXPECT_EQ(info.microseconds, 801'000'000U);
+    ASSERT_EQ(returns.size(), kKnownReturns.size());
+    for (std::size_t i = 0; i < returns.size(); i++)
+    {
+        const KnownReturn& known = kKnownReturns[i];
+        EXPECT_EQ(returns[i].block, known.block);
+        EXPECT_EQ(returns[i].laser, known.laser);
+        EXPECT_EQ(returns[i].intensity, known.intensity);
+        EXPECT_NEAR(returns[i].offset, known.offset, 1);
+        EXPECT_NEAR(returns[i].azimuth, known.azimuth, 2e-5);
+        EXPECT_NEAR(returns[i].position.x(), known.x, 1e-5);
+        EXPECT_NEAR(returns[i].position.y(), known.y, 1e-5);
+        EXPECT_NEAR(returns[i].position.z(), known.z, 1e-5);
+    }
+}
 
 TEST(VelodyneDecoder, FollowsTheDataSheetOfTheVlp16)
 {
