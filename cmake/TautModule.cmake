@@ -43,5 +43,6 @@ function(taut_add_test name)
     test_${name}
     TEST_PREFIX "${name}."
     DISCOVERY_TIMEOUT 60
+    NO_PRETTY_VALUES
     PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600 ${ARG_PROPERTIES})
 endfunction()

@@ -2,6 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <ostream>
+
+namespace taut
+{
+void PrintTo(Kernel kernel, std::ostream* out)
+{
+    constexpr std::array<const char*, 4> kNames{"none", "huber", "cauchy", "geman_mcclure"};
+    *out << kNames.at(static_cast<std::size_t>(kernel));
+}
+}  // namespace taut
+
 using namespace taut;
 
 namespace
@@ -40,7 +52,8 @@ TEST_P(AnyKernel, SmallResidualsAreSquaresAndLargeOnesCountNoMore)
 
 INSTANTIATE_TEST_SUITE_P(
     Of, AnyKernel,
-    ::testing::Values(Kernel::None, Kernel::Huber, Kernel::Cauchy, Kernel::GemanMcClure));
+    ::testing::Values(Kernel::None, Kernel::Huber, Kernel::Cauchy, Kernel::GemanMcClure),
+    ::testing::PrintToStringParamName());
 
 TEST(RobustKernel, AnOutlierOfACauchyKernelHardlyPulls)
 {

@@ -2,9 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include "steady_turn.h"
 #include "taut/factors/ImuFactor.h"
 #include "taut/preintegration/MidpointPreintegrator.h"
+
+namespace taut
+{
+void PrintTo(Undistortion mode, std::ostream* out)
+{
+    *out << nameOf(mode);
+}
+}  // namespace taut
 
 using namespace taut;
 using namespace taut::test;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <ostream>
 
 #include "scenes.h"
 #include "taut/features/CurvatureExtractor.h"
@@ -65,6 +66,11 @@ struct Resolution
     int rings, columns;
 };
 
+void PrintTo(const Resolution& r, std::ostream* out)
+{
+    *out << r.rings << "x" << r.columns;
+}
+
 class CurvatureAt : public ::testing::TestWithParam<Resolution>
 {
 };
@@ -92,8 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Resolution{4, 300}, Resolution{4, 4096}, Resolution{16, 600}, Resolution{16, 1800},
         Resolution{64, 1024}, Resolution{128, 2048}),
-    [](const auto& test)
-    { return std::to_string(test.param.rings) + "x" + std::to_string(test.param.columns); });
+    ::testing::PrintToStringParamName());
 
 TEST(CurvatureExtractor, RejectsPointsBehindAnOcclusion)
 {

@@ -1,4 +1,6 @@
 /** Every container gives what was written, and its damages are told. */
+#include <ostream>
+
 #include "bag_support.h"
 
 namespace taut::test
@@ -12,6 +14,11 @@ struct Container
     TestWire wire;
     void (*write)(const std::string& path, const TestMessages&, const ContainerStyle&);
 };
+
+void PrintTo(const Container& container, std::ostream* out)
+{
+    *out << container.name;
+}
 
 void writeRos1(const std::string& path, const TestMessages& m, const ContainerStyle& style)
 {
@@ -111,8 +118,7 @@ TEST_P(BagContainer, ThatWasCutOffGivesWhatIsComplete)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    All, BagContainer, testing::ValuesIn(kContainers),
-    [](const auto& container) { return std::string(container.param.name); });
+    All, BagContainer, testing::ValuesIn(kContainers), testing::PrintToStringParamName());
 
 TestMessages clouds(const std::vector<Scan>& scans, TestWire wire)
 {

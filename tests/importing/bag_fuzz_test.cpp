@@ -1,5 +1,6 @@
 /** Damaged bags end in an error or in warnings, never otherwise. */
 #include <optional>
+#include <ostream>
 
 #include "bag_support.h"
 
@@ -12,6 +13,11 @@ struct Target
     const char* name;
     Blob (*make)(const TemporaryFolder& folder);
 };
+
+void PrintTo(const Target& target, std::ostream* out)
+{
+    *out << target.name;
+}
 
 TestMessages content(TestWire wire)
 {
@@ -112,8 +118,7 @@ TEST_P(DamagedBag, WithFlippedBitsDoesNotCrash)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Containers, DamagedBag, testing::ValuesIn(kTargets),
-    [](const auto& target) { return std::string(target.param.name); });
+    Containers, DamagedBag, testing::ValuesIn(kTargets), testing::PrintToStringParamName());
 
 /** Messages alone, without a container's checks around them. */
 TEST(DamagedMessages, DoNotCrash)

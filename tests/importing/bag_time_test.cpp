@@ -1,4 +1,6 @@
 /** What the times of points and the stamps of clouds mean is found out and told. */
+#include <ostream>
+
 #include "bag_support.h"
 
 namespace taut::test
@@ -14,6 +16,11 @@ struct TimeCase
     Duration tolerance;  //!< the resolution of the field [ns]
     const char* finding;
 };
+
+void PrintTo(const TimeCase& time, std::ostream* out)
+{
+    *out << time.name;
+}
 
 CloudStyle style(
     const char* name, const char* type, double unit, bool absolute = false, double stamp_at = 0)
@@ -60,8 +67,7 @@ TEST_P(PointTimes, AreReadInTheUnitOfTheirField)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Fields, PointTimes, testing::ValuesIn(kTimeCases),
-    [](const auto& time) { return std::string(time.param.name); });
+    Fields, PointTimes, testing::ValuesIn(kTimeCases), testing::PrintToStringParamName());
 
 /** Bags of clouds without an IMU. */
 class ABagOfClouds : public testing::Test

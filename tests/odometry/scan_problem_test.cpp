@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <ostream>
 
 #include "least_squares.h"
 #include "recording.h"
@@ -12,6 +13,19 @@
 #include "taut/map/OctreeMap.h"
 #include "taut/odometry/registerAll.h"
 #include "taut/preintegration/MidpointPreintegrator.h"
+
+namespace taut
+{
+void PrintTo(Undistortion mode, std::ostream* out)
+{
+    *out << nameOf(mode);
+}
+
+void PrintTo(PreviousState state, std::ostream* out)
+{
+    *out << (state == PreviousState::Fixed ? "fixed" : "released");
+}
+}  // namespace taut
 
 using namespace taut;
 using namespace taut::test;

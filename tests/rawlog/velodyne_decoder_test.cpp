@@ -127,7 +127,8 @@ TEST_P(VelodyneRecording, TimesAndAzimuthsRunOnFromPacketToPacket)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Recordings, VelodyneRecording, testing::Values("vlp16_5hz", "vlp16_gps", "hdl32"));
+    Recordings, VelodyneRecording, testing::Values("vlp16_5hz", "vlp16_gps", "hdl32"),
+    [](const auto& test) { return std::string(test.param); });
 
 namespace
 {

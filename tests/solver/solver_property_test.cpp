@@ -3,6 +3,8 @@
  * it. */
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include "least_squares.h"
 #include "problems.h"
 #include "taut/core/Plugins.h"
@@ -27,6 +29,11 @@ struct Choice
 {
     const char *label, *name, *thorough, *short_of_time;
 };
+
+void PrintTo(const Choice& choice, std::ostream* out)
+{
+    *out << choice.label;
+}
 
 class AnySolver : public ::testing::TestWithParam<Choice>
 {
@@ -138,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(
             "NloptLbfgs", "taut::NloptSolver",
             "{algorithm: LD_LBFGS, max_evaluations: 300, cost_tolerance: 1.0e-10}",
             "{algorithm: LD_LBFGS, max_evaluations: 2}"}),
-    [](const auto& test) { return test.param.label; });
+    ::testing::PrintToStringParamName());
 
 TEST(GaussNewton, BoundsEveryCoordinateOfAStepAndKeepsItsDirection)
 {
