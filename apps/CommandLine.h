@@ -3,10 +3,10 @@
 #include <mrpt/3rdparty/tclap/CmdLine.h>
 
 #include <iostream>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "taut/core/Yaml.h"
 
@@ -18,42 +18,46 @@ struct UsageError : std::runtime_error
     using std::runtime_error::runtime_error;
 };
 
-/** Parses the command line. False if that was all there was to do (--help, --version); throws
- * UsageError where MRPT's TCLAP alone would print and return the same false. */
-inline bool parseCommandLine(TCLAP::CmdLine& cmd, int argc, char** argv)
+/** What a program says of its use besides its options. */
+struct Usage
 {
-    struct Output : TCLAP::StdOutput
-    {
-        void failure(TCLAP::CmdLineInterface& /*cmd*/, TCLAP::ArgException& e) override
-        {
-            throw UsageError(e.error() + " " + e.argId());
-        }
-    } output;
-    const std::unique_ptr<TCLAP::CmdLineOutput> replaced(cmd.getOutput());  // TCLAP would leak it
-    cmd.setOutput(&output);
-    return cmd.parse(argc, argv);
-}
+    std::vector<std::string> examples;  //!< arguments without the program's name
+    /** A switch that needs none of the required arguments; null: there is none. */
+    const TCLAP::SwitchArg* alone = nullptr;
+};
+
+/** Parses the command line. False if that was all there was to do (--help, --version). Throws
+ * UsageError that names what is missing or wrong, and the nearest option to one that is unknown. */
+bool parseCommandLine(TCLAP::CmdLine& cmd, int argc, char** argv, const Usage& usage = {});
+
+/** Makes the standard streams safe to write to: descriptors that are closed are opened to
+ * /dev/null, else the first file that is opened would get what is meant for them. A reader who has
+ * gone away makes writing fail instead of ending the program (SIGPIPE is ignored). */
+void guardStandardStreams();
+
+/** Writes out what is left for the standard output. False if that, or anything before, could not be
+ * written. */
+bool flushStandardOutput();
 
 /** Calls `body` and gives the exit code: what it returns (0 if nothing), 1 failed, 2 bad usage or a
- * configuration that cannot be used. */
+ * configuration that cannot be used. An output that could not be written is a failure. */
 template <class Body>
 int runProgram(const std::string& name, Body body)
 {
+    guardStandardStreams();
     try
     {
+        int code = 0;
         if constexpr (std::is_void_v<decltype(body())>)
-        {
             body();
-            return 0;
-        }
         else
-        {
-            return body();
-        }
+            code = body();
+        if (!flushStandardOutput()) throw std::runtime_error("cannot write to the standard output");
+        return code;
     }
     catch (const UsageError& e)
     {
-        std::cerr << name << ": " << e.what() << " (see " << name << " --help)\n";
+        std::cerr << name << ": " << e.what() << "; see " << name << " --help\n";
         return 2;
     }
     catch (const ConfigError& e)

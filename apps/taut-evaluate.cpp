@@ -84,7 +84,10 @@ std::optional<Options> parse(int argc, char** argv)
         "", "FOLDER", cmd);
     TCLAP::ValueArg<std::string> plot_format(
         "", "plot-format", "svg (default) or png", false, "svg", "NAME", cmd);
-    if (!taut::parseCommandLine(cmd, argc, argv)) return {};
+    const taut::Usage usage{
+        {"--truth rawlogs/hall_fast.gt.tum --estimate out/hall_fast/trajectory.tum",
+         "--truth GT.tum --estimate trajectory.tum --align yaw --plot out/plots"}};
+    if (!taut::parseCommandLine(cmd, argc, argv, usage)) return {};
 
     Options options;
     options.truth = truth.getValue();

@@ -44,7 +44,9 @@ std::optional<Options> parse(int argc, char** argv)
         0, "N", cmd);
     TCLAP::SwitchArg json("", "json", "Write JSON instead of text", cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "No progress", cmd);
-    if (!taut::parseCommandLine(cmd, argc, argv)) return {};
+    const taut::Usage usage{
+        {"rawlogs/hall_fast.rawlog", "LOG.rawlog --from-time 10 --json > report.json"}};
+    if (!taut::parseCommandLine(cmd, argc, argv, usage)) return {};
 
     Options o;
     taut::RawlogConfig& log = o.inspection.log;

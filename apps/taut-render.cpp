@@ -64,7 +64,7 @@ void checkSize(const taut::OSMesaRendererConfig& config)
 /** Nothing if only help was asked for. */
 std::optional<Options> parse(int argc, char** argv)
 {
-    TCLAP::CmdLine cmd("Draws the map and the trajectory that taut-slam left", ' ', "0.1");
+    TCLAP::CmdLine cmd("Draws the map and the trajectory that taut-slam left", ' ', TAUT_VERSION);
     TCLAP::ValueArg<std::string> input(
         "i", "input", "Folder with map.ply and trajectory.tum", true, "", "FOLDER", cmd);
     TCLAP::ValueArg<std::string> output(
@@ -76,7 +76,9 @@ std::optional<Options> parse(int argc, char** argv)
     TCLAP::ValueArg<std::string> caption(
         "", "caption", "Text below the picture (default: folder, length, duration)", false, "",
         "TEXT", cmd);
-    if (!taut::parseCommandLine(cmd, argc, argv)) return {};
+    const taut::Usage usage{
+        {"-i out/hall_fast", "-i out/hall_fast -o pictures --view top --size 800x600"}};
+    if (!taut::parseCommandLine(cmd, argc, argv, usage)) return {};
 
     Options options;
     options.input = input.getValue();

@@ -2,7 +2,7 @@
 # Writes docs/configuration.md from what the program itself says of its keys.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-show() { build/release/bin/taut-slam -i none -o none --show-config "$@"; }
+show() { build/release/bin/taut-slam --show-config "$@"; }
 section() { sed -n "/^$1:/,/^[^ ]/{/^$1:/p;/^ /p}"; }
 {
   cat <<'END'
@@ -10,7 +10,7 @@ section() { sed -n "/^$1:/,/^[^ ]/{/^$1:/p;/^ /p}"; }
 
 Every key with its default, unit and meaning. Written by `docs/update-configuration.sh` out of
 
-    build/release/bin/taut-slam -i none -o none --show-config
+    build/release/bin/taut-slam --show-config
 
 A method file (`-c`) gives the keys that differ; `-s SECTION.KEY=VALUE` overrides one; an unknown key is an error that
 names it. `config.yaml` in the folder of results has all of them as they took effect. `type` names the class

@@ -55,7 +55,9 @@ bool parseOptions(int argc, char** argv, Options& o)
         false, "", "start|end", cmd);
     TCLAP::SwitchArg overwrite("w", "overwrite", "Replace a rawlog that is there", cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "Errors and warnings only", cmd);
-    if (!parseCommandLine(cmd, argc, argv)) return false;
+    const Usage usage{
+        {"drive.bag -o drive.rawlog", "walk.pcap -o walk.rawlog --ouster-json sensor.json"}};
+    if (!parseCommandLine(cmd, argc, argv, usage)) return false;
 
     o.source = source.getValue();
     o.output = output.getValue();

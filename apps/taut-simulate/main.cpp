@@ -40,7 +40,10 @@ std::optional<Options> parse(int argc, char** argv)
     TCLAP::ValueArg<int> threads(
         "", "threads", "0 (default): as many as there are cores", false, 0, "N", cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "No progress", cmd);
-    if (!taut::parseCommandLine(cmd, argc, argv)) return {};
+    const taut::Usage usage{
+        {"-c config/scenarios/hall_violent.yaml -o log.rawlog",
+         "-c config/scenarios/hall_fast.yaml -o log.rawlog --seed 2 --duration 20"}};
+    if (!taut::parseCommandLine(cmd, argc, argv, usage)) return {};
 
     Options options;
     options.scenario = scenario.getValue();

@@ -24,10 +24,8 @@ bool parseOptions(int argc, char** argv, Options& o)
     TCLAP::CmdLine cmd(
         "taut-slam: LiDAR-IMU SLAM that undistorts every point in every iteration. Reads an MRPT "
         "rawlog with a 3D LiDAR and an IMU; writes the trajectory, the map and pictures of both "
-        "into "
-        "a folder. Exit codes: 0 done, 1 failed, 2 bad usage, 3 done, but part of the log could "
-        "not be "
-        "used (the warnings and metrics.json say which and why).",
+        "into a folder. Exit codes: 0 done, 1 failed, 2 bad usage, 3 done, but part of the log "
+        "could not be used (the warnings and metrics.json say which and why).",
         ' ', TAUT_VERSION);
     TCLAP::ValueArg<std::string> input(
         "i", "input", "Rawlog to process (observations or sensory frames, gz or not)", true, "",
@@ -51,11 +49,17 @@ bool parseOptions(int argc, char** argv, Options& o)
         false, 0, "N", cmd);
     TCLAP::SwitchArg overwrite("w", "overwrite", "Write into a folder that has results", cmd);
     TCLAP::SwitchArg pictures("", "no-pictures", "Do not render snapshots", cmd);
-    TCLAP::SwitchArg show("", "show-config", "Print the configuration in effect and end", cmd);
+    TCLAP::SwitchArg show(
+        "", "show-config", "Print the configuration in effect and end; needs neither -i nor -o",
+        cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "Errors only: as -v ERROR", cmd);
     TCLAP::ValueArg<std::string> level(
         "v", "verbosity", "ERROR, WARN, INFO or DEBUG (default INFO)", false, "INFO", "LEVEL", cmd);
-    if (!parseCommandLine(cmd, argc, argv)) return false;
+    const Usage usage{
+        {"-i rawlogs/hall_fast.rawlog -o out/hall_fast",
+         "-i LOG.rawlog -o out/paper -c config/paper.yaml --threads 2"},
+        &show};
+    if (!parseCommandLine(cmd, argc, argv, usage)) return false;
 
     o.input = input.getValue();
     o.output = output.getValue();
