@@ -1,7 +1,5 @@
 /** taut-import: turns a recording of another format into a rawlog.
  * Exit codes: 0 done, 1 failed, 2 bad usage, 3 done, but part of the input could not be used. */
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <regex>
@@ -9,6 +7,7 @@
 
 #include "../CommandLine.h"
 #include "../Progress.h"
+#include "../Signals.h"
 #include "Options.h"
 #include "SensorSummary.h"
 #include "taut/core/WarningLog.h"
@@ -19,11 +18,7 @@ namespace taut
 {
 namespace
 {
-std::atomic<bool> interrupted{false};
-void onSignal(int)
-{
-    interrupted = true;
-}
+const std::atomic<bool>& interrupted = interruption();
 
 /** One run of the program: from a recording to a rawlog. */
 class Import
@@ -148,8 +143,7 @@ int run(int argc, char** argv)
     if (!parseOptions(argc, argv, options)) return 0;
     if (!options.overwrite && std::filesystem::exists(options.output))
         throw UsageError("'" + options.output + "' is there already; -w overwrites it");
-    std::signal(SIGINT, onSignal);
-    std::signal(SIGTERM, onSignal);
+    catchSignals();
     return Import(options).execute();
 }
 }  // namespace

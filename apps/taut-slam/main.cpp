@@ -1,13 +1,13 @@
 #include <mrpt/system/os.h>
 
 #include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 
 #include "../CommandLine.h"
 #include "../Progress.h"
+#include "../Signals.h"
 #include "Options.h"
 #include "methodFile.h"
 #include "taut/core/Plugins.h"
@@ -22,11 +22,7 @@ namespace taut
 {
 namespace
 {
-std::atomic<bool> interrupted{false};
-void onSignal(int)
-{
-    interrupted = true;
-}
+const std::atomic<bool>& interrupted = interruption();
 
 void loadPlugins(const std::vector<std::string>& plugins)
 {
@@ -157,8 +153,7 @@ int run(int argc, char** argv)
 {
     Options options;
     if (!parseOptions(argc, argv, options)) return 0;
-    std::signal(SIGINT, onSignal);
-    std::signal(SIGTERM, onSignal);
+    catchSignals();
     registerAll();
     registerRenderers();
     loadPlugins(options.plugins);

@@ -1,13 +1,9 @@
-#include <fcntl.h>
 #include <gmock/gmock.h>
-#include <signal.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "slam_program.h"
-#include "taut/files/PlyFile.h"
 #include "taut/rawlog/RawlogSource.h"
 #include "taut/rawlog/RawlogWriter.h"
 #include "temporary_folder.h"
@@ -96,50 +92,5 @@ TEST(ALogWithoutImu, FallsBackToConstantVelocityAndSaysSo)
     EXPECT_THAT(run.output, HasSubstr("no_imu"));
     EXPECT_EQ(metricsOf(out)["method"]["with_imu"], false);
     EXPECT_GE(readTum(out + "/trajectory.tum").size(), 40U);
-}
-
-TEST(AnInterruptedRun, SavesWhatWasDone)
-{
-    const TemporaryFolder folder;
-    const std::string out = folder / "out";
-    int ends[2];
-    ASSERT_EQ(pipe(ends), 0);
-    const pid_t child = fork();
-    if (child == 0)
-    {
-        dup2(ends[1], STDERR_FILENO);
-        close(ends[0]);
-        execl(
-            TAUT_SLAM, TAUT_SLAM, "-i", kSample.c_str(), "-o", out.c_str(), "--no-pictures", "-v",
-            "DEBUG", nullptr);
-        _exit(127);
-    }
-    close(ends[1]);
-    std::string said;  // a line a scan: terminated as soon as the first ones are matched
-    char buffer[256];
-    bool terminated = false;
-    while (const auto n = read(ends[0], buffer, sizeof buffer))
-    {
-        if (n < 0) break;
-        said.append(buffer, static_cast<std::size_t>(n));
-        if (terminated || said.find("iterations") == std::string::npos) continue;
-        kill(child, SIGTERM);
-        terminated = true;
-    }
-    close(ends[0]);
-    int status = 0;
-    waitpid(child, &status, 0);
-    ASSERT_TRUE(terminated) << said;
-    ASSERT_TRUE(WIFEXITED(status));
-    EXPECT_EQ(WEXITSTATUS(status), 3) << said;
-
-    const auto poses = readTum(out + "/trajectory.tum").size();
-    EXPECT_GE(poses, 1U);
-    EXPECT_LT(poses, 124U);
-    EXPECT_EQ(metricsOf(out)["result"]["interrupted"], true);
-    EXPECT_EQ(metricsOf(out)["result"]["poses"], poses);
-    EXPECT_GT(readPlyPoints(out + "/map.ply").size(), 0U);
-    EXPECT_TRUE(std::filesystem::exists(out + "/map.bt"));
-    EXPECT_TRUE(std::filesystem::exists(out + "/states.csv"));
 }
 }  // namespace
