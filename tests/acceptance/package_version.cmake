@@ -1,0 +1,16 @@
+# cmake -D BUILD=FOLDER -D VERSION=0.1.0 -P package_version.cmake: who asks for another minor version than
+# the package has, or for a later patch, does not get it.
+cmake_minimum_required(VERSION 3.25)
+string(REPLACE "." ";" parts ${VERSION})
+list(GET parts 0 major)
+list(GET parts 1 minor)
+list(GET parts 2 patch)
+math(EXPR next_major "${major} + 1")
+math(EXPR next_minor "${minor} + 1")
+math(EXPR next_patch "${patch} + 1")
+foreach(asked ${next_major}.${minor} ${major}.${next_minor} ${major}.${minor}.${next_patch})
+  find_package(taut ${asked} QUIET CONFIG PATHS ${BUILD} NO_DEFAULT_PATH)
+  if(taut_FOUND OR NOT taut_CONSIDERED_VERSIONS STREQUAL VERSION)
+    message(FATAL_ERROR "asked for ${asked}: considered '${taut_CONSIDERED_VERSIONS}', found: ${taut_FOUND}")
+  endif()
+endforeach()
