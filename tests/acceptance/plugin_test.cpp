@@ -17,7 +17,7 @@ TEST(APlugin, AddsAFeatureExtractorByName)
     ASSERT_EQ(run.exit_code, 0) << run.output;
     EXPECT_THAT(contentOf(out + "/config.yaml"), HasSubstr("type: 'example::EveryNth'"));
     EXPECT_THAT(contentOf(out + "/config.yaml"), HasSubstr("step: 3"));
-    EXPECT_LT(positionError(kSampleTruth, out + "/trajectory.tum"), 0.02);
+    EXPECT_LT(positionError(kSampleTruth, out + "/trajectory.tum"), 0.0014);  // measured: 0.91 mm
 }
 
 TEST(APlugin, ThatIsNotLoadedIsNamed)

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <fstream>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <vector>
 
