@@ -145,37 +145,20 @@ TEST_F(ARunUnderNohup, GoesOnWhenTheTerminalHangsUp)
     EXPECT_EQ(readTum(out_ + "/trajectory.tum").size(), 124U);
 }
 
-/** Programs that hang: their rig file is a pipe into which nobody writes. */
-class AHangingProgram : public testing::TestWithParam<int>
-{
- protected:
-    /** Begins it, and sends it signals from when it reads the pipe until it ends. */
-    int statusAfterSignals(std::vector<std::string> words)
-    {
-        const std::string rig = folder_ / "rig.yaml";
-        EXPECT_EQ(mkfifo(rig.c_str(), 0600), 0);
-        words.insert(words.end(), {"-o", folder_ / "out", "-r", rig});
-        const Child child(words);
-        const int writer = child.waitForReader(rig);
-        EXPECT_GE(writer, 0);
-        const int status = child.sendUntilEnd(GetParam());
-        close(writer);
-        return status;
-    }
-
-    const TemporaryFolder folder_;
-};
+/** A program that catches signals as all do, and then hangs: it reads a pipe into which nobody
+ * writes. */
+using AHangingProgram = testing::TestWithParam<int>;
 
 TEST_P(AHangingProgram, IsEndedByTheSecondSignal)
 {
-    const int status = statusAfterSignals({TAUT_SLAM, "-i", kSample});
-    ASSERT_TRUE(WIFSIGNALED(status));
-    EXPECT_EQ(WTERMSIG(status), GetParam());
-}
-
-TEST_P(AHangingProgram, ThatImportsIsEndedByTheSecondSignal)
-{
-    const int status = statusAfterSignals({TAUT_PROGRAMS "/taut-import", folder_ / "."});
+    const TemporaryFolder folder;
+    const std::string pipe = folder / "pipe";
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    const Child child({TAUT_HANGING_PROGRAM, pipe});
+    const int writer = child.waitForReader(pipe);
+    EXPECT_GE(writer, 0);
+    const int status = child.sendUntilEnd(GetParam());
+    close(writer);
     ASSERT_TRUE(WIFSIGNALED(status));
     EXPECT_EQ(WTERMSIG(status), GetParam());
 }
