@@ -5,10 +5,10 @@
 #include <iostream>
 #include <string>
 
-#include "taut/odometry/registerAll.h"
 #include "taut/rawlog/PrefetchedRawlog.h"
 #include "taut/render/OSMesaRenderer.h"
 #include "taut/session/Session.h"
+#include "taut/session/registerSession.h"
 
 using namespace taut;
 
@@ -21,7 +21,7 @@ int main(int argc, char** argv)
     }
     try
     {
-        registerAll();
+        registerSession();
         registerRenderers();
         WarningLog warnings([](const Warning& w)
                             { std::cerr << w.kind << ": " << w.text << '\n'; });

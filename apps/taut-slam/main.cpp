@@ -11,10 +11,10 @@
 #include "Options.h"
 #include "methodFile.h"
 #include "taut/core/Plugins.h"
-#include "taut/odometry/registerAll.h"
 #include "taut/rawlog/PrefetchedRawlog.h"
 #include "taut/render/OSMesaRenderer.h"
 #include "taut/session/Session.h"
+#include "taut/session/registerSession.h"
 
 namespace fs = std::filesystem;
 
@@ -96,7 +96,8 @@ class Run
             {
                 progress_.update(share, session.scans(), session.duration());
                 return !interrupted;
-            });
+            },
+            [&] { return std::make_unique<PrefetchedRawlog>(rawlogConfig(options_, rig_)); });
         progress_.clear();
         report(outcome);
         if (!outcome.failure.empty())
@@ -137,8 +138,10 @@ class Run
         const bool pictures = session_.pictures && o.poses > 0 && !o.pictures_failed;
         std::printf(
             "%d poses, %.2f m, %.1f s of recording in %.1f s (%.1f ms a scan), %zu map points\n"
+            "%zu submaps, %zu loops closed%s\n"
             "results in %s: trajectory.tum, map.ply, map.ot, map.bt, %smetrics.json\n",
             o.poses, o.length, o.duration, o.wall_seconds, o.milliseconds_a_scan, o.map_points,
+            o.submaps, o.loops, o.undistorted_again ? ", every point undistorted again" : "",
             options_.output.c_str(), pictures ? "snapshot_*.png, " : "");
     }
 
@@ -154,7 +157,7 @@ int run(int argc, char** argv)
     Options options;
     if (!parseOptions(argc, argv, options)) return 0;
     catchSignals();
-    registerAll();
+    registerSession();
     registerRenderers();
     loadPlugins(options.plugins);
     return Run(options).execute();

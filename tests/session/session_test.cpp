@@ -1,4 +1,5 @@
 #include "taut/session/Session.h"
+#include "taut/session/registerSession.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "recording.h"
-#include "taut/odometry/registerAll.h"
 #include "taut/render/OSMesaRenderer.h"
 #include "temporary_folder.h"
 
@@ -61,7 +61,7 @@ class SessionTest : public ::testing::Test
  protected:
     SessionTest()
     {
-        registerAll();
+        registerSession();
         registerRenderers();
         ConfigSection root;
         config.method = Method::read(root, std::nullopt);

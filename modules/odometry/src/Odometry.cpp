@@ -98,6 +98,10 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples* imu)
     if (isIterated(mode) && result.with_imu && hasLongGap(motion)) mode = Undistortion::IteratedImu;
     const SweepPath predicted(mode, motion, previous_.state, prior);
     result.sweep.mode = mode;
+    result.sweep.T_imu_lidar = raw.T_imu_lidar;
+    result.sweep.previous_rate = previous_rate_;
+    result.sweep.noise = noise_;
+    result.sweep.with_imu = result.with_imu;
     result.sweep.prior_begin = previous_.state;
     result.sweep.prior_end = prior;
     watch.stage(result.report.times.preintegrate);
@@ -214,32 +218,27 @@ void Odometry::insert(const Scan& scan, const SweepPath& path, ScanResult& resul
 {
     map_->keep(scratch_);
     map_->slide(previous_.state.T_world_imu.p);
-    const std::size_t n = scan.points.size();
-    if (n == 0) return;
-    const auto most = static_cast<std::size_t>(config_.insert.max_points);
-    const std::size_t stride = n > most ? (n + most - 1) / most : 1;
-    const std::size_t kept = (n + stride - 1) / stride;
+    if (scan.points.empty()) return;
+    Scan& raw = result.sweep.scan;
+    raw = thinned(scan, static_cast<std::size_t>(config_.insert.max_points));
+    const std::size_t kept = raw.points.size();
     const auto [first, last] = std::minmax_element(
         scan.points.begin(), scan.points.end(),
         [](const LidarPoint& a, const LidarPoint& b) { return a.offset < b.offset; });
     const SampledPath poses(path, scan.timeOf(*first), scan.timeOf(*last));
     inserted_.resize(kept);
     result.points.resize(kept);
-    Scan& raw = result.sweep.scan;
-    raw = {scan.stamp, scan.end, {}, scan.rings, scan.already_undistorted, scan.sensor_label, {}};
-    raw.points.resize(kept);
     executor_.forChunks(
         kept, 1024,
         [&](std::size_t, std::size_t chunk_begin, std::size_t chunk_end)
         {
             for (std::size_t i = chunk_begin; i < chunk_end; i++)
             {
-                const LidarPoint& p = scan.points[i * stride];
+                const LidarPoint& p = raw.points[i];
                 const Pose pose = poses.poseAt(scan.timeOf(p));
                 const Vector3d position = pose * Vector3d(p.position.cast<double>());
                 inserted_[i] = {position, FeatureKind::Any, (pose.p - position).normalized()};
                 result.points[i] = position;
-                raw.points[i] = p;
             }
         });
     map_->insert(inserted_, executor_);

@@ -31,4 +31,14 @@ Scan transformScan(const Scan& scan, const RangeConfig& range, Time begin)
     }
     return out;
 }
+
+Scan thinned(const Scan& scan, std::size_t most)
+{
+    const std::size_t n = scan.points.size();
+    const std::size_t stride = n > most ? (n + most - 1) / most : 1;
+    Scan out{scan.stamp, scan.end, {}, scan.rings, scan.already_undistorted, scan.sensor_label, {}};
+    out.points.reserve((n + stride - 1) / stride);
+    for (std::size_t i = 0; i < n; i += stride) out.points.push_back(scan.points[i]);
+    return out;
+}
 }  // namespace taut

@@ -14,6 +14,7 @@ Method Method::read(ConfigSection& root, const std::optional<ImuNoise>& noise_of
     }
     Method m;
     m.odometry = OdometryConfig::read(root);
+    m.slam = SlamConfig::read(root.section("slam"), m.odometry.map);
     ConfigSection& output = root.section("output");
     output.key("refined", m.refined, "write each pose as the next scan leaves it, one scan late");
     output.key(

@@ -110,6 +110,16 @@ std::string Metrics::json(const Summary& s, const WarningLog& warnings) const
         {"window_cells", s.map_cells},
         {"key_scans", s.key_scans},
         {"occupancy_resolution_m", s.occupancy_resolution}};
+    if (s.with_slam)
+        j["slam"] = {
+            {"submaps", s.submaps},
+            {"loops_judged", s.loops_judged},
+            {"loops_accepted", s.loops_accepted},
+            {"loops_pending", s.loops_pending},
+            {"loops_withdrawn", s.loops_withdrawn},
+            {"undistorted_again", s.second_pass},
+            {"seconds", s.slam_seconds},
+            {"second_pass_s", s.second_pass_seconds}};
     j["frames"] =
         "trajectory: pose of the IMU body in the world (z up, origin at the first state), at the "
         "end "

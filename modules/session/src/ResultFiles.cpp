@@ -28,13 +28,34 @@ std::ostream& operator<<(std::ostream& out, const Vector3d& v)
 }
 }  // namespace
 
-ResultFiles::ResultFiles(const std::string& folder, bool points)
-    : folder_(folder),
-      tum_(folder + "/trajectory.tum"),
-      kitti_(open(folder + "/trajectory_kitti.txt")),
-      states_(open(folder + "/states.csv")),
-      timing_(open(folder + "/timing.csv")),
+PathFiles::PathFiles(const std::string& folder, const std::string& suffix)
+    : tum_path_(folder + "/trajectory.tum" + suffix),
+      kitti_path_(folder + "/trajectory_kitti.txt" + suffix),
+      tum_(tum_path_),
+      kitti_(open(kitti_path_)),
       sample_(kMaxSample)
+{
+}
+
+void PathFiles::add(const StampedPose& stamped)
+{
+    const Pose& pose = stamped.T_world_imu;
+    tum_.write(stamped);
+    kitti_ << kittiLine(pose) << '\n';
+    if (last_) length_ += (pose.p - last_->p).norm();
+    last_ = pose;
+    sample_.add(pose);
+    poses_++;
+}
+
+void PathFiles::close()
+{
+    tum_.close();
+    taut::close(kitti_, kitti_path_);
+}
+
+ResultFiles::ResultFiles(const std::string& folder, bool points)
+    : folder_(folder), states_(open(folder + "/states.csv")), timing_(open(folder + "/timing.csv"))
 {
     if (points) points_.emplace(folder + "/undistorted.points");
     states_ << "t,vx,vy,vz,ba_x,ba_y,ba_z,bg_x,bg_y,bg_z";
@@ -52,17 +73,6 @@ void ResultFiles::add(const ScanResult& result)
     writeState(result);
     writeTiming(result);
     if (points_) points_->write({result.estimate.state.t, result.undistorted});
-}
-
-void ResultFiles::addPose(const StampedPose& stamped)
-{
-    const Pose& pose = stamped.T_world_imu;
-    tum_.write(stamped);
-    kitti_ << kittiLine(pose) << '\n';
-    if (last_) length_ += (pose.p - last_->p).norm();
-    last_ = pose;
-    sample_.add(pose);
-    poses_++;
 }
 
 void ResultFiles::writeState(const ScanResult& r)
@@ -88,9 +98,7 @@ void ResultFiles::writeTiming(const ScanResult& r)
 
 void ResultFiles::close()
 {
-    tum_.close();
     if (points_) points_->close();
-    taut::close(kitti_, folder_ + "/trajectory_kitti.txt");
     taut::close(states_, folder_ + "/states.csv");
     taut::close(timing_, folder_ + "/timing.csv");
 }

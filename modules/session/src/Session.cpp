@@ -1,11 +1,14 @@
 #include "taut/session/Session.h"
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
 #include "taut/core/format.h"
+#include "taut/graph/G2oFile.h"
+#include "taut/slam/LoopsFile.h"
 
 namespace fs = std::filesystem;
 
@@ -21,6 +24,22 @@ void writeText(const fs::path& path, const std::string& text)
     if (!file) throw std::runtime_error("cannot write '" + path.string() + "'");
 }
 
+/** Of the run before in the same folder: nothing of two runs is mixed. */
+void removeSlamFiles(const std::string& folder)
+{
+    for (const char* name : {"trajectory_odometry.tum", "graph.g2o", "loops.csv"})
+        fs::remove(fs::path(folder) / name);
+    const fs::path submaps = fs::path(folder) / "submaps";
+    if (!fs::is_directory(submaps)) return;
+    for (const auto& entry : fs::directory_iterator(submaps))
+        if (entry.path().extension() == ".tsm") fs::remove(entry.path());
+}
+
+double secondsSince(std::chrono::steady_clock::time_point begin)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
 /** Warnings which say that a part of the input was not used. */
 constexpr const char* kUnused[] = {"late_imu", "imu_late", "imu_silent", "lidar_ended"};
 }  // namespace
@@ -30,7 +49,8 @@ Session::Session(const SessionConfig& config, WarningLog& warnings, EventSink ev
       warnings_(warnings),
       events_(std::move(events)),
       executor_(config.threads),
-      map_(config.method.map_export, config.folder),
+      map_(std::make_unique<MapExport>(config.method.map_export, config.folder)),
+      path_(std::make_unique<PathFiles>(config.folder)),
       files_(config.folder, config.method.odometry.keep_undistorted),
       metrics_(config.input),
       pipeline_(
@@ -42,6 +62,10 @@ Session::Session(const SessionConfig& config, WarningLog& warnings, EventSink ev
         fs::remove(rig);  // of the run before
     else
         writeText(rig, config_.rig);
+    removeSlamFiles(config_.folder);
+    if (config_.method.slam.loops)
+        mapper_ = std::make_unique<Mapper>(
+            config_.method.slam, config_.folder + "/submaps", executor_, warnings_.sink());
 }
 
 Session::~Session() = default;
@@ -63,27 +87,54 @@ void Session::take(const Event& event)
         const NavState& x = result.estimate.state;
         metrics_.add(result);
         files_.add(result);
+        covariance_ = result.estimate.covariance;
         if (!config_.method.refined)
         {
-            files_.addPose({x.t, x.T_world_imu});
-            map_.add(x, result.points);
+            path_->add({x.t, x.T_world_imu});
+            map_->add(x, result.points);
         }
     }
-    else if (const auto* refined = std::get_if<Refined>(&event);
-             refined != nullptr && config_.method.refined)
+    else if (const auto* refined = std::get_if<Refined>(&event))
     {
-        files_.addPose({refined->state.t, refined->state.T_world_imu});
-        map_.add(refined->state, refined->points());
+        takeRefined(*refined);
+    }
+    else if (mapper_)
+    {
+        // What the IMU alone bridges is in the covariance; a wrong match is not.
+        const auto* lost = std::get_if<Lost>(&event);
+        if (lost != nullptr && lost->cause == "pose_doubtful") mapper_->setDoubt(true);
+        if (std::holds_alternative<Recovered>(event)) mapper_->setDoubt(false);
     }
     if (events_) events_(event);
 }
 
-SessionOutcome Session::run(MeasurementStream& log, const std::function<bool(double)>& go_on)
+void Session::takeRefined(const Refined& refined)
+{
+    const bool for_files = config_.method.refined;
+    if (!for_files && !mapper_) return;
+    const NavState& x = refined.state;
+    const std::vector<Vector3d> points = refined.points();
+    if (for_files)
+    {
+        path_->add({x.t, x.T_world_imu});
+        map_->add(x, points);
+    }
+    if (!mapper_) return;
+    if (records_.empty())
+        mapper_->start({refined.sweep.begin, pipeline_.initialization()->estimate.covariance});
+    mapper_->add({x, covariance_}, points, refined.sweep.T_imu_lidar);
+    records_.emplace_back(refined.sweep, x);
+}
+
+SessionOutcome Session::run(
+    MeasurementStream& log, const std::function<bool(double)>& go_on, Reopen reopen)
 {
     bool interrupted = false;
+    reopen_ = std::move(reopen);
+    go_on_ = go_on;
     const auto begin = std::chrono::steady_clock::now();
     const std::string failure = processAll(log, go_on, interrupted);
-    wall_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    wall_seconds_ = secondsSince(begin);
     SessionOutcome outcome = finish(log.progress(), log.incomplete(), interrupted);
     if (!failure.empty()) outcome.failure = failure;
     return outcome;
@@ -122,17 +173,84 @@ SessionOutcome Session::finish(const StreamProgress& log, bool incomplete, bool 
         outcome.failure = e.what();
     }
     files_.close();
-    map_.finish(warnings_.sink());
-    outcome.poses = files_.poses();
+    path_->close();
+    map_->finish(warnings_.sink());
+    if (interrupted) reopen_ = {};
+    try
+    {
+        closeLoops();
+    }
+    catch (const std::exception& e)
+    {
+        outcome.failure = e.what();
+    }
+    outcome.poses = path_->poses();
     outcome.pictures_failed = config_.pictures && outcome.poses > 0 && !drawPictures();
     writeMetrics(log, incomplete, interrupted);
-    outcome.length = files_.length();
+    outcome.length = path_->length();
     outcome.duration = metrics_.duration();
     outcome.wall_seconds = wall_seconds_;
     outcome.milliseconds_a_scan = metrics_.meanMilliseconds();
-    outcome.map_points = map_.points();
+    outcome.map_points = map_->points();
+    if (mapper_) outcome.submaps = mapper_->graph().vertices.size();
+    if (mapper_) outcome.loops = mapper_->accepted();
+    outcome.undistorted_again = undistorted_again_;
     outcome.partly = interrupted || usedPartly(log, incomplete);
     return outcome;
+}
+
+void Session::closeLoops()
+{
+    if (!mapper_) return;
+    const auto begin = std::chrono::steady_clock::now();
+    const double slam_before = mapper_->seconds();
+    mapper_->finish();
+    wall_seconds_ += mapper_->seconds() - slam_before;
+    const fs::path folder = config_.folder;
+    fs::copy_file(
+        path_->tumPath(), folder / "trajectory_odometry.tum", fs::copy_options::overwrite_existing);
+    writeG2o((folder / "graph.g2o").string(), mapper_->graph());
+    writeLoops((folder / "loops.csv").string(), mapper_->loops());
+    if (!mapper_->moved()) return;
+    std::vector<StampedPose> path;
+    mapper_->forPath([&](Time t, const Pose& pose) { path.push_back({t, pose}); });
+    rewriteAlong(path);
+    second_pass_seconds_ = secondsSince(begin);
+}
+
+void Session::rewriteAlong(const std::vector<StampedPose>& path)
+{
+    const fs::path folder = config_.folder;
+    auto corrected_path = std::make_unique<PathFiles>(config_.folder, ".part");
+    std::vector<Pose> poses;
+    for (const StampedPose& stamped : path) poses.push_back(stamped.T_world_imu);
+    for (std::size_t i = 1; i < path.size(); i++) corrected_path->add(path[i]);
+    corrected_path->close();
+    fs::rename(corrected_path->tumPath(), path_->tumPath());
+    fs::rename(corrected_path->kittiPath(), path_->kittiPath());
+    path_ = std::move(corrected_path);
+
+    const fs::path beside = folder / "map.part";
+    const auto anew = [&]
+    {
+        fs::create_directories(beside);
+        return std::make_unique<MapExport>(config_.method.map_export, beside.string());
+    };
+    std::unique_ptr<MapExport> map = anew();
+    second_pass_ = true;
+    if (reopen_)
+        undistorted_again_ = undistortAgain(
+            *reopen_(), config_.method.odometry, corrected(records_, poses), *map, go_on_);
+    if (!undistorted_again_)
+    {
+        map = anew();
+        moveSubmaps(*mapper_, poses, *map);
+    }
+    map->finish(warnings_.sink());
+    for (const char* name : {"map.ply", "map.ot", "map.bt"})
+        fs::rename(beside / name, folder / name);
+    fs::remove(beside);
+    map_ = std::move(map);
 }
 
 bool Session::usedPartly(const StreamProgress& log, bool incomplete) const
@@ -148,8 +266,8 @@ std::vector<std::string> Session::caption() const
     return {
         fs::path(config_.input).filename().string(),
         format(
-            "%.1f m, %.1f s, %d scans, undistortion: %s", files_.length(), metrics_.duration(),
-            files_.poses(), nameOf(config_.method.odometry.estimation.undistortion))};
+            "%.1f m, %.1f s, %d scans, undistortion: %s", path_->length(), metrics_.duration(),
+            path_->poses(), nameOf(config_.method.odometry.estimation.undistortion))};
 }
 
 bool Session::drawPictures() const
@@ -157,7 +275,7 @@ bool Session::drawPictures() const
     try
     {
         const std::unique_ptr<Renderer> renderer = config_.method.renderer.create();
-        const RenderScene scene{map_.sample(), files_.sample(), caption()};
+        const RenderScene scene{map_->sample(), path_->sample(), caption()};
         for (const View view : kAllViews)
             renderer->render(
                 scene, view,
@@ -180,16 +298,35 @@ void Session::writeMetrics(const StreamProgress& log, bool incomplete, bool inte
     s.interrupted = interrupted;
     s.with_imu = pipeline_.withImu();
     if (pipeline_.initialization()) s.rest_seconds = pipeline_.initialization()->rest_duration;
-    s.length = files_.length();
-    s.map_points = map_.points();
+    s.length = path_->length();
+    s.map_points = map_->points();
     s.map_cells = pipeline_.mapSize();
-    s.key_scans = map_.keyScans();
-    s.occupancy_resolution = map_.occupancyResolution();
+    s.key_scans = map_->keyScans();
+    s.occupancy_resolution = map_->occupancyResolution();
     s.mode = nameOf(config_.method.odometry.estimation.undistortion);
     s.method_file = config_.method_file;
     s.threads = config_.threads;
     s.wall_seconds = wall_seconds_;
     s.doubts = doubts_.all();
+    s.with_slam = mapper_ != nullptr;
+    s.second_pass = undistorted_again_;
+    s.second_pass_seconds = second_pass_seconds_;
+    if (mapper_)
+    {
+        const auto count = [this](Verdict verdict)
+        {
+            const auto& loops = mapper_->loops();
+            return static_cast<std::size_t>(std::count_if(
+                loops.begin(), loops.end(),
+                [&](const LoopClosure& loop) { return loop.verdict == verdict; }));
+        };
+        s.submaps = mapper_->graph().vertices.size();
+        s.loops_judged = mapper_->loops().size();
+        s.loops_accepted = count(Verdict::Accepted);
+        s.loops_pending = count(Verdict::Pending);
+        s.loops_withdrawn = count(Verdict::Withdrawn);
+        s.slam_seconds = mapper_->seconds();
+    }
     writeText(fs::path(config_.folder) / "metrics.json", metrics_.json(s, warnings_));
 }
 }  // namespace taut

@@ -14,6 +14,15 @@ using VertexId = std::int64_t;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
+/** From an error on the left of a pose to the same one on its right: Exp(d) T = T Exp(d') with
+ * d' = rightFromLeft(T) d to first order, where d = (p, theta), Exp(d) T = {Exp(theta) R,
+ * Exp(theta) t
+ * + p} and T Exp(d') = {R Exp(theta'), R p' + t}. */
+Matrix6d rightFromLeft(const Pose& T);
+
+/** The error d' = (p, theta) with T Exp(d') = other, as above. */
+Vector6d rightErrorTo(const Pose& T, const Pose& other);
+
 /** The pose of a submap. */
 struct GraphVertex
 {

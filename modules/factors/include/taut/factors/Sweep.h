@@ -11,9 +11,13 @@ namespace taut
  * ends are known better: by the scan after it, or after a loop was closed. Thread-safe to read. */
 struct Sweep
 {
-    Scan scan;  //!< raw points in the body frame at their own times
+    Scan scan;         //!< raw points in the body frame at their own times
+    Pose T_imu_lidar;  //!< where the rays began
     Undistortion mode = Undistortion::None;
     PreintegratedImu motion;  //!< from the end of the sweep back to `begin`
+    Vector3d previous_rate = Vector3d::Zero();  //!< that the motion was integrated with [rad/s]
+    ImuNoise noise;                             //!< the same
+    bool with_imu = true;                       //!< false: by constant velocity
     NavState prior_begin;     //!< the states before the sweep was matched
     NavState prior_end;
     NavState begin;  //!< the state at the end of the sweep before, as this sweep left it

@@ -18,4 +18,7 @@ bool isUsable(const LidarPoint& point, const Scan& scan, const RangeConfig& rang
 /** Scan Transformation (paper, section II-A): the points from the LiDAR's frame to the body's, so
  * that later stages know of one frame only. Points that are not usable are dropped. */
 Scan transformScan(const Scan& scan, const RangeConfig& range, Time begin);
+
+/** The scan with at most so many of its points, evenly taken in their order. */
+Scan thinned(const Scan& scan, std::size_t most);
 }  // namespace taut

@@ -6,6 +6,7 @@
 #include "taut/core/Renderer.h"
 #include "taut/odometry/OdometryConfig.h"
 #include "taut/session/MapExport.h"
+#include "taut/slam/SlamConfig.h"
 
 namespace taut
 {
@@ -13,6 +14,7 @@ namespace taut
 struct Method
 {
     OdometryConfig odometry;
+    SlamConfig slam;
     MapExportConfig map_export;
     Prototype<Renderer> renderer;
     bool refined = true;    //!< write poses and points as the next scan leaves them, one scan late

@@ -33,6 +33,12 @@ class Metrics
         int threads = 0;
         std::vector<Doubt> doubts;  //!< stretches in which the pose was in doubt
         double wall_seconds = 0;    //!< of the processing, without pictures
+        bool with_slam = false;     //!< loops were looked for
+        std::size_t submaps = 0, loops_judged = 0, loops_accepted = 0, loops_pending = 0,
+                    loops_withdrawn = 0;
+        double slam_seconds = 0;         //!< of wall_seconds: on loops and the graph
+        double second_pass_seconds = 0;  //!< of wall_seconds
+        bool second_pass = false;        //!< every point was undistorted again
     };
     /** JSON text. Hashes the input: reads it once. */
     std::string json(const Summary& summary, const WarningLog& warnings) const;

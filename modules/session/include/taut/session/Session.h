@@ -10,6 +10,8 @@
 #include "taut/session/Method.h"
 #include "taut/session/Metrics.h"
 #include "taut/session/ResultFiles.h"
+#include "taut/session/SecondPass.h"
+#include "taut/slam/Mapper.h"
 
 namespace taut
 {
@@ -32,6 +34,8 @@ struct SessionOutcome
     double duration = 0;                               //!< [s] of the recording
     double wall_seconds = 0, milliseconds_a_scan = 0;  //!< of the estimation
     std::size_t map_points = 0;
+    std::size_t submaps = 0, loops = 0;  //!< loops: that were closed
+    bool undistorted_again = false;      //!< every point, along the path that the loops corrected
     bool pictures_failed = false;
     bool interrupted = false;
     /** A part of the input was not used, or a stretch of the pose is in doubt: metrics.json tells
@@ -41,7 +45,11 @@ struct SessionOutcome
 };
 
 /** One run from measurements to a folder of results: trajectory, states, map, occupancy octree,
- * pictures and metrics. Whatever ends it, what was computed up to there is written.
+ * submaps, loops, pictures and metrics. Whatever ends it, what was computed up to there is written.
+ *
+ * Where loops are closed, the path is not the odometry's any more. The recording is then streamed
+ * again, if it can be, and every point undistorted along the corrected path; else the points of the
+ * submaps are moved.
  *
  * With a stream there is run(). A program with sensors of its own calls add() for each measurement
  * and finish() at the end. Not thread-safe; several sessions can run at once in one program. */
@@ -62,16 +70,26 @@ class Session
     /** Completes all files. `log` and `incomplete` tell what was read. */
     SessionOutcome finish(const StreamProgress& log, bool incomplete, bool interrupted = false);
 
+    /** Opens the stream of a run once more, from its begin. */
+    using Reopen = std::function<std::unique_ptr<MeasurementStream>()>;
+
     /** Reads a stream to its end, or until `go_on` returns false. Calls it after each measurement
-     * with the share of the stream that is read (0 to 1). Exceptions end the estimation, not the
-     * session: they are told in the outcome. */
-    SessionOutcome run(MeasurementStream& log, const std::function<bool(double)>& go_on);
+     * with the share of the stream that is read (0 to 1), in the second pass again from 0. An
+     * interrupted second pass falls back to the points of the submaps. Exceptions end the
+     * estimation, not the session: they are told in the outcome. */
+    SessionOutcome run(
+        MeasurementStream& log, const std::function<bool(double)>& go_on, Reopen reopen = {});
+
+    bool inSecondPass() const { return second_pass_; }
 
     int scans() const { return metrics_.scans(); }
     double duration() const { return metrics_.duration(); }  //!< [s] estimated so far
 
  private:
     void take(const Event& event);
+    void takeRefined(const Refined& refined);
+    void closeLoops();
+    void rewriteAlong(const std::vector<StampedPose>& path);
     std::string processAll(
         MeasurementStream& log, const std::function<bool(double)>& go_on, bool& interrupted);
     bool drawPictures() const;
@@ -83,10 +101,18 @@ class Session
     WarningLog& warnings_;
     EventSink events_;
     Executor executor_;
-    MapExport map_;
+    std::unique_ptr<MapExport> map_;
+    std::unique_ptr<PathFiles> path_;
     ResultFiles files_;
     Metrics metrics_;
     Doubts doubts_;
+    std::unique_ptr<Mapper> mapper_;  // null: loops are not asked for
+    std::vector<SweepRecord> records_;
+    NavState::Matrix covariance_ = NavState::Matrix::Zero();  // of the last estimate
+    Reopen reopen_;
+    std::function<bool(double)> go_on_;
+    bool second_pass_ = false, undistorted_again_ = false;
+    double second_pass_seconds_ = 0;
     Pipeline pipeline_;
     double wall_seconds_ = 0;
 };

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <functional>
+#include <list>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "taut/core/LoopClosure.h"
+#include "taut/core/Parallel.h"
+#include "taut/core/Warning.h"
+#include "taut/slam/SlamConfig.h"
+#include "taut/submaps/SubmapStore.h"
+
+namespace taut
+{
+/** From the odometry's path to one consistent map: cuts it into submaps, finds loops, judges them,
+ * and keeps the pose graph. Not thread-safe. */
+class Mapper
+{
+ public:
+    /** Submaps are written to `folder`. Warnings: `loop_withdrawn`. */
+    Mapper(const SlamConfig& config, std::string folder, Executor& executor, WarningSink warn);
+
+    /** The path begins at this state. */
+    void start(const NavEstimate& first) { builder_.start(first); }
+
+    /** As SubmapBuilder::add(). Now and then a submap ends: then loops are looked for. */
+    void add(
+        const NavEstimate& estimate, const std::vector<Vector3d>& points_world,
+        const Pose& T_imu_lidar)
+    {
+        builder_.add(estimate, points_world, T_imu_lidar);
+    }
+
+    /** From here on the pose is in doubt, or no more. */
+    void setDoubt(bool doubtful) { builder_.setDoubt(doubtful); }
+
+    /** The path is complete: ends the last submap, and looks for loops in all of the graph until
+     * nothing new is found. */
+    void finish();
+
+    /** True if a loop is believed: the path is not the odometry's any more. */
+    bool moved() const { return accepted_ > 0; }
+
+    const PoseGraph& graph() const { return graph_; }
+    /** Everything that was judged, in that order. */
+    const std::vector<LoopClosure>& loops() const { return loops_; }
+    std::size_t accepted() const { return accepted_; }
+    double seconds() const { return seconds_; }  //!< spent on loops and graph
+
+    /** Calls `visit(t, T_world_imu)` for every state of the corrected path, in the order of time.
+     * The first of all is the state that the path began with. Reads the submaps again. */
+    void forPath(const std::function<void(Time, const Pose&)>& visit) const;
+
+    /** Submap `id` from the disk or from memory. */
+    std::shared_ptr<const Submap> submap(VertexId id) const { return store_.at(id); }
+
+ private:
+    void take(Submap submap);
+    void searchFor(VertexId id);
+    void judge(const LoopCandidate& candidate);
+    void weighPending();
+    bool agrees(const LoopClosure& a, const LoopClosure& b) const;
+    void accept(LoopClosure& loop, const std::string& reason);
+    std::optional<Matrix6d> covarianceOf(VertexId from, VertexId to);
+    Pose between(VertexId from, VertexId to) const;
+    SubmapView viewOf(VertexId id);
+    const Pose& poseOf(VertexId id) const;
+
+    SlamConfig config_;
+    Executor& executor_;
+    WarningSink warn_;
+    SubmapStore store_;
+    std::unique_ptr<PlaceRecognizer> places_;
+    std::unique_ptr<GraphOptimizer> optimizer_;
+    LoopJudge judge_;
+    SubmapBuilder builder_;
+    PoseGraph graph_;
+    std::vector<double> weights_;                        // of the last solution
+    std::shared_ptr<const GraphCovariance> covariance_;  // of the present graph; null: not known
+    std::vector<LoopClosure> loops_;
+    std::set<std::pair<VertexId, VertexId>> judged_;
+    std::list<std::pair<VertexId, std::shared_ptr<const Map>>> maps_;  // the last used one first
+    std::size_t accepted_ = 0;
+    double seconds_ = 0;
+};
+}  // namespace taut

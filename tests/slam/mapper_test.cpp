@@ -1,0 +1,155 @@
+#include "taut/slam/Mapper.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "taut/graph/Register.h"
+#include "taut/graph/SparseGraphOptimizer.h"
+#include "taut/places/NearbyPlaces.h"
+#include "temporary_folder.h"
+#include "walks.h"
+
+using namespace taut;
+using namespace taut::test;
+
+namespace
+{
+class AMapper : public ::testing::Test
+{
+ protected:
+    AMapper()
+    {
+        config.places = Prototype<PlaceRecognizer>(std::make_shared<NearbyPlaces>());
+        config.optimizer = Prototype<GraphOptimizer>(std::make_shared<SparseGraphOptimizer>());
+    }
+
+    /** Round the ring; fills `truth` and `odometry_path`. */
+    std::unique_ptr<Mapper> walk(
+        double length, double scale, double turn, int threads = 1,
+        const std::function<Pose(double)>& way = aroundRing, const Scene& scene = ring())
+    {
+        truth.clear();
+        odometry_path.clear();
+        executor = std::make_unique<Executor>(threads);
+        auto mapper = std::make_unique<Mapper>(
+            config, folder / ("submaps" + std::to_string(runs++)), *executor,
+            [this](const Warning& w) { warnings.push_back(w); });
+        DriftingOdometry odometry;
+        odometry.scale = scale;
+        odometry.turn = turn;
+        odometry.start(way(0));
+        Random random(1);
+        const Time begin = 1'700'000'000'000'000'000;
+        truth[begin] = odometry_path[begin] = odometry.estimate;
+        mapper->start(estimateAt(begin, odometry.estimate));
+        carry(
+            scene, way, length, odometry, random,
+            [&](const NavEstimate& e, const std::vector<Vector3d>& points)
+            {
+                truth[e.state.t] = odometry.truth;
+                odometry_path[e.state.t] = odometry.estimate;
+                mapper->add(e, points, {});
+            });
+        mapper->finish();
+        return mapper;
+    }
+
+    double errorOf(const std::map<Time, Pose>& path) const
+    {
+        double sum = 0;
+        for (const auto& [t, pose] : path) sum += (pose.p - truth.at(t).p).squaredNorm();
+        return std::sqrt(sum / static_cast<double>(path.size()));
+    }
+
+    static std::map<Time, Pose> pathOf(const Mapper& mapper)
+    {
+        std::map<Time, Pose> path;
+        mapper.forPath([&](Time t, const Pose& pose) { path[t] = pose; });
+        return path;
+    }
+
+    TemporaryFolder folder;
+    SlamConfig config = slamConfig();
+    std::unique_ptr<Executor> executor;
+    std::map<Time, Pose> truth, odometry_path;
+    std::vector<Warning> warnings;
+    int runs = 0;
+};
+}  // namespace
+
+TEST_F(AMapper, TakesTheDriftOutOfASecondLap)
+{
+    const auto mapper = walk(220, 1.003, 1.5e-4);
+    const double before = errorOf(odometry_path), after = errorOf(pathOf(*mapper));
+    RecordProperty("before_mm", std::to_string(1e3 * before));
+    RecordProperty("after_mm", std::to_string(1e3 * after));
+    EXPECT_GE(mapper->accepted(), 4u);
+    EXPECT_GT(before, 0.3);
+    EXPECT_LT(after, 0.3 * before);
+    for (const LoopClosure& loop : mapper->loops())
+    {
+        if (loop.verdict != Verdict::Accepted) continue;
+        const auto at = [&](VertexId id)
+        {
+            const auto submap = mapper->submap(id);
+            return truth.at(submap->scans[0].t) * submap->scans[0].T_submap_imu.inverse();
+        };
+        const Pose gap = (at(loop.from).inverse() * at(loop.to)).inverse() * loop.T_from_to;
+        EXPECT_LT(gap.p.norm(), 0.08) << loop.from << " to " << loop.to;
+    }
+}
+
+TEST_F(AMapper, LeavesAPathWithoutLoopsAsItIs)
+{
+    const auto mapper = walk(80, 1.003, 1.5e-4);
+    EXPECT_FALSE(mapper->moved());
+    const auto path = pathOf(*mapper);
+    ASSERT_EQ(path.size(), odometry_path.size());
+    for (const auto& [t, pose] : path) EXPECT_LT((pose.p - odometry_path.at(t).p).norm(), 1e-9);
+}
+
+TEST_F(AMapper, GivesTheSameBitsWithTwoThreads)
+{
+    const auto one = walk(150, 1.003, 1.5e-4, 1), two = walk(150, 1.003, 1.5e-4, 2);
+    ASSERT_TRUE(one->moved());
+    const auto a = pathOf(*one), b = pathOf(*two);
+    for (const auto& [t, pose] : a) EXPECT_TRUE(pose.p == b.at(t).p && pose.R == b.at(t).R);
+}
+
+TEST_F(AMapper, NeverMergesStoreysThatLookAlike)
+{
+    // Round the ring, up 3.2 m by a ramp that nobody sees, and round the ring again.
+    const auto way = [](double s)
+    {
+        Pose pose = aroundRing(s);
+        pose.p.z() += std::clamp((s - 115) / 5, 0.0, 1.0) * 3.2;
+        return pose;
+    };
+    truth.clear();
+    executor = std::make_unique<Executor>(1);
+    Mapper mapper(config, folder / "storeys", *executor, {});
+    DriftingOdometry odometry;
+    odometry.start(way(0));
+    Random random(1);
+    mapper.start(estimateAt(1'700'000'000'000'000'000, odometry.estimate));
+    Time t = 1'700'000'000'000'000'000;
+    for (double s = 0.5; s <= 230; s += 0.5)
+    {
+        odometry.moveTo(way(s));
+        // Each storey is the same ring: seen from the body's height above its floor.
+        Pose within = odometry.truth;
+        within.p.z() = 1.2;
+        std::vector<Vector3d> points = pointsSeenFrom(ring(), within, random);
+        for (Vector3d& p : points) p = odometry.estimate * p;
+        mapper.add(estimateAt(t += 500'000'000, odometry.estimate), points, {});
+    }
+    mapper.finish();
+    for (const LoopClosure& loop : mapper.loops())
+    {
+        if (loop.verdict != Verdict::Accepted) continue;
+        const auto height = [&](VertexId id) { return mapper.submap(id)->T_world_submap.p.z(); };
+        EXPECT_LT(std::abs(height(loop.from) - height(loop.to)), 0.5)
+            << loop.from << " to " << loop.to;
+    }
+}
