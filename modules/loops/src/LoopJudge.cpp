@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/LU>
+
 #include "taut/core/format.h"
 #include "taut/loops/CommonView.h"
 #include "taut/loops/SubmapRegistration.h"
@@ -13,15 +15,13 @@ namespace taut
 namespace
 {
 // How far off a start may be for a registration to find its way.
-constexpr double kReach = 0.5;        // [m]
-constexpr double kAngleReach = 0.1;   // [rad]
+constexpr double kReach = 0.5;        // [m], and as far turned at the lever
 constexpr double kFurthest = 6;       // [m] that starts are tried around a guess
 constexpr double kMostTurned = 0.4;   // [rad]
 constexpr std::size_t kGlance = 200;  // points that tell which starts are worth it
 constexpr std::size_t kBest = 3;      // starts that are followed
 // Starts around a result that have to lead back to it.
-constexpr double kAside = 0.25;         // [m]
-constexpr double kAsideTurned = 0.035;  // [rad]
+constexpr double kAside = 0.25;  // [m], and as far turned at the lever
 /** From -reach to reach about a step apart; 0 alone where the reach is within a step. */
 std::vector<double> stepsWithin(double reach, double step)
 {
@@ -38,8 +38,15 @@ double deviation(const Matrix6d& covariance, int from, int to)
     return std::sqrt(largest);
 }
 
+/** T moved by so much and turned about the vertical through the middle of the points. */
+Pose movedAside(const Pose& T_from_to, const Extent& extent, const Vector3d& by, double yaw)
+{
+    const Matrix3d R = expSO3({0, 0, yaw});
+    return T_from_to * Pose{R, extent.middle - R * extent.middle + by};
+}
+
 /** The guess, and others around it as far as it is uncertain. */
-std::vector<Pose> startsAround(const LoopCandidate& candidate)
+std::vector<Pose> startsAround(const LoopCandidate& candidate, const Extent& extent)
 {
     const double apart = std::min(2 * deviation(candidate.covariance, 0, 2), kFurthest);
     const double above = std::min(2 * deviation(candidate.covariance, 2, 3), kFurthest);
@@ -48,10 +55,9 @@ std::vector<Pose> startsAround(const LoopCandidate& candidate)
     for (const double x : stepsWithin(apart, kReach))
         for (const double y : stepsWithin(apart, kReach))
             for (const double z : stepsWithin(above, kReach))
-                for (const double yaw : stepsWithin(turned, kAngleReach))
+                for (const double yaw : stepsWithin(turned, kReach / extent.lever))
                     if (std::hypot(x, y) <= apart + 1e-9)
-                        starts.push_back(
-                            candidate.T_from_to * Pose{expSO3({0, 0, yaw}), {x, y, z}});
+                        starts.push_back(movedAside(candidate.T_from_to, extent, {x, y, z}, yaw));
     return starts;
 }
 
@@ -68,7 +74,7 @@ SubmapFit bestFit(
     SubmapRegistration& registration, const std::vector<MapPoint>& points,
     const LoopCandidate& candidate)
 {
-    std::vector<Pose> starts = startsAround(candidate);
+    std::vector<Pose> starts = startsAround(candidate, extentOf(points));
     if (starts.size() > kBest)
     {
         const std::vector<MapPoint> glance = everyNth(points, kGlance);
@@ -89,24 +95,26 @@ SubmapFit bestFit(
     return best;
 }
 
+/** How far two poses are apart in the directions that the overlap shows. */
 struct Difference
 {
     double position = 0, angle = 0;
-    void include(const Pose& a, const Pose& b)
+    void include(const PoseDirections& seen, const Pose& a, const Pose& b)
     {
-        position = std::max(position, (a.p - b.p).norm());
-        angle = std::max(angle, logSO3(a.R.transpose() * b.R).norm());
+        Vector6d coordinates = seen.basis.partialPivLu().solve(rightErrorTo(a, b));
+        for (int i = 0; i < 6; i++)
+            if (seen.isOpen(i)) coordinates[i] = 0;
+        const Vector6d apart = seen.axes * coordinates;
+        position = std::max(position, apart.head<3>().norm());
+        angle = std::max(angle, apart.tail<3>().norm() / seen.lever);
     }
 };
 
 /** Information of a loop: what the residuals say, less in what both submaps have in common wrong;
  * none in directions that the overlap does not show. The fewer points show a direction, the more of
  * an error in common comes through in it. */
-Matrix6d informationOf(
-    const SubmapFit& fit, const std::vector<MapPoint>& points, const LoopJudgeConfig& config,
-    int& directions)
+Matrix6d informationOf(const PoseDirections& seen, const LoopJudgeConfig& config, int& directions)
 {
-    const PoseDirections seen = directionsOf(fit.hessian, points);
     Vector6d information = Vector6d::Zero();
     directions = 0;
     for (int i = 0; i < 6; i++)
@@ -200,7 +208,9 @@ LoopClosure LoopJudge::judge(
         return refuse(
             format("overlap: on one side only, %d sectors of 8", std::max(a.sectors, b.sectors)));
 
-    loop.information = informationOf(fit, of_to, config_, e.directions);
+    const Extent extent = extentOf(of_to);
+    const PoseDirections seen = directionsOf(fit.hessian, extent);
+    loop.information = informationOf(seen, config_, e.directions);
     if (e.directions < config_.min_directions)
         return refuse(format("degenerate: only %d of 6 directions are seen", e.directions));
 
@@ -208,17 +218,18 @@ LoopClosure LoopJudge::judge(
     Difference difference;
     const SubmapFit back = on_to.align(of_from, T_to_from, kReach / 2);
     if (!back.converged) return refuse("the registration the other way finds no fit");
-    difference.include(back.T_from_to.inverse(), fit.T_from_to);
+    difference.include(seen, fit.T_from_to, back.T_from_to.inverse());
     for (const double side : {-1.0, 1.0})
     {
-        const Pose aside{expSO3({0, 0, side * kAsideTurned}), {side * kAside, kAside, 0}};
-        const SubmapFit again = on_from.align(of_to, fit.T_from_to * aside, kReach);
+        const Pose aside = movedAside(
+            fit.T_from_to, extent, {side * kAside, kAside, 0}, side * kAside / extent.lever);
+        const SubmapFit again = on_from.align(of_to, aside, kReach);
         if (!again.converged) return refuse("another start finds no fit");
-        difference.include(again.T_from_to, fit.T_from_to);
+        difference.include(seen, fit.T_from_to, again.T_from_to);
     }
     e.disagreement = difference.position;
-    if (e.directions == 6 && (difference.position > config_.max_disagreement ||
-                              difference.angle > config_.max_angle_disagreement))
+    if (difference.position > config_.max_disagreement ||
+        difference.angle > config_.max_angle_disagreement)
         return refuse(format(
             "disagreement: registrations differ by %.0f mm and %.2f degrees",
             1e3 * difference.position, difference.angle * 180 / M_PI));

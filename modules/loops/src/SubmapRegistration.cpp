@@ -13,8 +13,7 @@ constexpr double kPointNoise = 0.02;  // [m] of a point of a submap, besides its
 constexpr double kShrink = 0.6;       // of the kernel's width, from one iteration to the next
 constexpr double kDeviations = 3;     // width of the kernel in the end
 constexpr double kSmallStep = 3e-4;   // [m], and of rotations at the lever: it has converged
-constexpr double kLastStep = 3e-3;    // the same after the last iteration: matches may alternate
-constexpr double kLever = 10;         // [m]
+constexpr double kLastStep = 1e-2;    // the same after the last iteration: matches may alternate
 
 double sigmaOf(const Correspondence& c)
 {
@@ -38,17 +37,23 @@ std::vector<MapPoint> mapPointsOf(const Submap& submap, std::size_t most)
     return points;
 }
 
-PoseDirections directionsOf(const Matrix6d& hessian, const std::vector<MapPoint>& points)
+Extent extentOf(const std::vector<MapPoint>& points)
 {
+    Extent extent;
     const double share = 1 / static_cast<double>(points.size());
-    Vector3d middle = Vector3d::Zero();
-    for (const MapPoint& p : points) middle += share * p.position;
-    double spread2 = 1;
-    for (const MapPoint& p : points) spread2 += share * (p.position - middle).squaredNorm();
+    for (const MapPoint& p : points) extent.middle += share * p.position;
+    double spread2 = 0;
+    for (const MapPoint& p : points) spread2 += share * (p.position - extent.middle).squaredNorm();
+    extent.lever = std::max(1.0, std::sqrt(spread2));
+    return extent;
+}
+
+PoseDirections directionsOf(const Matrix6d& hessian, const Extent& extent)
+{
     PoseDirections d;
-    d.lever = std::sqrt(spread2);
+    d.lever = extent.lever;
     Matrix6d to_origin = Matrix6d::Identity();  // of an error told at the middle, scaled
-    to_origin.topRightCorner<3, 3>() = hat(middle) / d.lever;
+    to_origin.topRightCorner<3, 3>() = hat(extent.middle) / d.lever;
     to_origin.bottomRightCorner<3, 3>() /= d.lever;
     const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(
         to_origin.transpose() * hessian * to_origin);
@@ -80,6 +85,7 @@ SubmapFit SubmapRegistration::align(
 {
     SubmapFit fit;
     fit.T_from_to = guess;
+    const Extent extent = extentOf(points);
     for (int i = 0; i < kIterations; i++)
     {
         match(points, fit.T_from_to);
@@ -105,7 +111,7 @@ SubmapFit SubmapRegistration::align(
         }
         if (fit.weight < 6) return fit;
         fit.residual = std::sqrt(square_sum / fit.weight);
-        const PoseDirections directions = directionsOf(fit.hessian, points);
+        const PoseDirections directions = directionsOf(fit.hessian, extent);
         const Vector6d along = directions.basis.transpose() * gradient;
         Vector6d coordinates;  // open directions stay where they are
         for (int k = 0; k < 6; k++)
@@ -114,7 +120,7 @@ SubmapFit SubmapRegistration::align(
         if (!step.allFinite()) return fit;
         fit.T_from_to = fit.T_from_to * Pose{expSO3(step.tail<3>()), step.head<3>()};
         const bool is_narrow = width < kDeviations * kPointNoise;
-        const double moved = std::max(step.head<3>().norm(), kLever * step.tail<3>().norm());
+        const double moved = std::max(step.head<3>().norm(), extent.lever * step.tail<3>().norm());
         fit.converged = is_narrow && moved < kLastStep;
         if (is_narrow && moved < kSmallStep) break;
         width *= kShrink;

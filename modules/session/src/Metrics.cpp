@@ -118,6 +118,7 @@ std::string Metrics::json(const Summary& s, const WarningLog& warnings) const
             {"loops_pending", s.loops_pending},
             {"loops_withdrawn", s.loops_withdrawn},
             {"undistorted_again", s.second_pass},
+            {"drift_scale", s.drift_scale},
             {"seconds", s.slam_seconds},
             {"second_pass_s", s.second_pass_seconds}};
     j["frames"] =

@@ -325,6 +325,7 @@ void Session::writeMetrics(const StreamProgress& log, bool incomplete, bool inte
         s.loops_accepted = count(Verdict::Accepted);
         s.loops_pending = count(Verdict::Pending);
         s.loops_withdrawn = count(Verdict::Withdrawn);
+        s.drift_scale = mapper_->scaleOfDrift();
         s.slam_seconds = mapper_->seconds();
     }
     writeText(fs::path(config_.folder) / "metrics.json", metrics_.json(s, warnings_));

@@ -9,6 +9,7 @@
 #include "taut/core/format.h"
 #include "taut/loops/SubmapRegistration.h"
 #include "taut/slam/ClosureGate.h"
+#include "taut/slam/DriftScale.h"
 #include "taut/slam/PathCorrection.h"
 
 namespace taut
@@ -111,7 +112,8 @@ void Mapper::finish()
         const std::size_t judged = loops_.size(), accepted = accepted_;
         for (std::size_t i = 0; i < graph_.vertices.size(); i++) searchFor(graph_.vertices[i].id);
         weighPending();
-        if (loops_.size() == judged && accepted_ == accepted) break;
+        learnDrift();
+        if (round > 0 && loops_.size() == judged && accepted_ == accepted) break;
     }
     for (LoopClosure& loop : loops_)
         if (loop.verdict == Verdict::Pending)
@@ -268,6 +270,45 @@ void Mapper::accept(LoopClosure& loop, const std::string& reason)
              format(
                  "the loop from submap %lld to %lld would tear what is known better",
                  static_cast<long long>(loop.from), static_cast<long long>(loop.to))});
+}
+
+PoseGraph Mapper::odometryAlone() const
+{
+    PoseGraph alone = graph_;
+    for (RelativeEdge& edge : alone.relative_edges) edge.enabled = edge.kind == EdgeKind::Odometry;
+    for (std::size_t i = 1; i < alone.vertices.size(); i++)
+    {
+        const auto before = store_.at(alone.vertices[i - 1].id);
+        alone.vertices[i].T_world_submap = alone.vertices[i - 1].T_world_submap *
+                                           nextInFrameOf(*before, *store_.at(alone.vertices[i].id));
+    }
+    return alone;
+}
+
+void Mapper::learnDrift()
+{
+    const PoseGraph alone = odometryAlone();
+    std::vector<ClosedGap> gaps;
+    std::shared_ptr<const GraphCovariance> covariance;
+    for (const LoopClosure& loop : loops_)
+    {
+        if (loop.verdict != Verdict::Accepted) continue;
+        if (!covariance) covariance = optimizer_->covariance(alone, {});
+        const Pose T_from_to =
+            alone.vertices[static_cast<std::size_t>(alone.indexOf(loop.from))]
+                .T_world_submap.inverse() *
+            alone.vertices[static_cast<std::size_t>(alone.indexOf(loop.to))].T_world_submap;
+        gaps.push_back(
+            {rightErrorTo(T_from_to, loop.T_from_to),
+             covariance->relative(loop.from, loop.to) / drift_scale_, loop.information});
+    }
+    if (gaps.empty()) return;
+    const double scale = driftScale(gaps);
+    for (RelativeEdge& edge : graph_.relative_edges)
+        if (edge.kind == EdgeKind::Odometry) edge.information *= drift_scale_ / scale;
+    drift_scale_ = scale;
+    weights_ = optimizer_->optimize(graph_).weights;
+    covariance_.reset();
 }
 
 void Mapper::forPath(const std::function<void(Time, const Pose&)>& visit) const

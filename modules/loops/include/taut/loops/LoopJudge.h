@@ -14,7 +14,7 @@ struct LoopJudgeConfig
     int points = 2500;               //!< of each submap that are registered
     double min_overlap = 0.3;        //!< of what both could see
     double min_inliers = 0.6;        //!< of these on a surface
-    double max_conflicts = 0.03;     //!< of the common cells, where the other saw free space
+    double max_conflicts = 0.005;    //!< of the common cells, where the other saw free space
     int min_cells = 150;             //!< that both could see
     int min_sectors = 3;             //!< of eight around, that hold inliers
     double max_disagreement = 0.05;  //!< [m] between registrations from either side and start

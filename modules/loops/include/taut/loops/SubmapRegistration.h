@@ -62,6 +62,14 @@ class SubmapRegistration
     std::vector<Correspondence> found_;
 };
 
+/** Middle of points and their root mean square distance from it, not below 1 m. */
+struct Extent
+{
+    Vector3d middle = Vector3d::Zero();
+    double lever = 1;
+};
+Extent extentOf(const std::vector<MapPoint>& points);
+
 /** Eigenvectors of a Hessian where rotations and positions part: around the middle of the points,
  * rotations told in metres at their distance from it. d = basis * coordinates. */
 struct PoseDirections
@@ -75,7 +83,7 @@ struct PoseDirections
      * err by a degree or four would show of a direction that has nothing to show. */
     bool isOpen(int i) const { return !(shown[i] > 0.005 * shown.sum()); }
 };
-PoseDirections directionsOf(const Matrix6d& hessian, const std::vector<MapPoint>& points);
+PoseDirections directionsOf(const Matrix6d& hessian, const Extent& extent);
 
 /** Residual of a point x of `to` and its derivative by d of T_from_to Exp(d): n . (R x + p - c) for
  * a plane. */

@@ -48,6 +48,8 @@ class Mapper
     /** Everything that was judged, in that order. */
     const std::vector<LoopClosure>& loops() const { return loops_; }
     std::size_t accepted() const { return accepted_; }
+    /** Factor on the covariance that the odometry claims of its drift, as the loops tell it. */
+    double scaleOfDrift() const { return drift_scale_; }
     double seconds() const { return seconds_; }  //!< spent on loops and graph
 
     /** Calls `visit(t, T_world_imu)` for every state of the corrected path, in the order of time.
@@ -62,6 +64,8 @@ class Mapper
     void searchFor(VertexId id);
     void judge(const LoopCandidate& candidate);
     void weighPending();
+    void learnDrift();
+    PoseGraph odometryAlone() const;
     bool agrees(const LoopClosure& a, const LoopClosure& b) const;
     void accept(LoopClosure& loop, const std::string& reason);
     std::optional<Matrix6d> covarianceOf(VertexId from, VertexId to);
@@ -84,6 +88,7 @@ class Mapper
     std::set<std::pair<VertexId, VertexId>> judged_;
     std::list<std::pair<VertexId, std::shared_ptr<const Map>>> maps_;  // the last used one first
     std::size_t accepted_ = 0;
+    double drift_scale_ = 1;
     double seconds_ = 0;
 };
 }  // namespace taut
