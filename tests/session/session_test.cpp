@@ -8,8 +8,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "player.h"
 #include "recording.h"
+#include "taut/core/Yaml.h"
 #include "taut/render/OSMesaRenderer.h"
+#include "taut/trajectory/TrajectoryFile.h"
 #include "temporary_folder.h"
 
 using namespace taut;
@@ -17,45 +20,6 @@ using namespace taut::test;
 
 namespace
 {
-/** Measurements out of memory, in the order of time. */
-class Player : public MeasurementStream
-{
- public:
-    Player(const ImuSamples& imu, const std::vector<Scan>& scans)
-    {
-        auto sample = imu.begin();
-        for (const Scan& scan : scans)
-        {
-            for (; sample != imu.end() && sample->t <= scan.end; ++sample)
-                all_.emplace_back(*sample);
-            all_.emplace_back(scan);
-        }
-        for (; sample != imu.end(); ++sample) all_.emplace_back(*sample);
-    }
-
-    std::optional<Measurement> next() override
-    {
-        if (at_ == throws_at) throw std::runtime_error("the cable was cut");
-        if (at_ == all_.size()) return std::nullopt;
-        return all_[at_++];
-    }
-    StreamProgress progress() const override
-    {
-        StreamProgress p;
-        p.bytes_read = at_;
-        p.bytes_total = all_.size();
-        return p;
-    }
-    bool incomplete() const override { return false; }
-
-    std::size_t throws_at = static_cast<std::size_t>(-1);
-    std::size_t size() const { return all_.size(); }
-
- private:
-    std::vector<Measurement> all_;
-    std::size_t at_ = 0;
-};
-
 class SessionTest : public ::testing::Test
 {
  protected:
@@ -199,4 +163,105 @@ TEST_F(SessionTest, TwoAtOnceDoNotDisturbEachOther)
         return std::string(std::istreambuf_iterator<char>(file), {});
     };
     EXPECT_EQ(content(folder / "run/trajectory.tum"), content(folder / "other/trajectory.tum"));
+}
+
+namespace
+{
+/** Of submaps as short as a recording of some seconds asks for. */
+Method methodWithShortSubmaps()
+{
+    ConfigSection root(parseYaml(
+        "{slam: {submap: {min_duration: 0.8, max_duration: 1, min_length: 0.1, length_share: 0.01},"
+        " places: {min_way: 0.1}}, initialization: {rest_duration: 1.2}}"));
+    return Method::read(root, std::nullopt);
+}
+
+std::string contentOf(const std::string& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+}  // namespace
+
+TEST_F(SessionTest, ClosesLoopsAndUndistortsAgain)
+{
+    recording.duration = 7;
+    imu = recording.imu();
+    scans = recording.scans();
+    config.method = methodWithShortSubmaps();
+    Player player(imu, scans);
+    std::size_t asked = 0, second = 0;
+    Session session(config, warnings);
+    const SessionOutcome outcome = session.run(
+        player,
+        [&](double)
+        {
+            asked++;
+            second += session.inSecondPass();
+            return true;
+        },
+        [&] { return std::make_unique<Player>(imu, scans); });
+    EXPECT_EQ(outcome.failure, "");
+    EXPECT_GE(outcome.submaps, 4u);
+    EXPECT_GE(outcome.loops, 1u);
+    EXPECT_TRUE(outcome.undistorted_again);
+    EXPECT_EQ(asked, 2 * player.size());
+    EXPECT_EQ(second, player.size());
+    EXPECT_EQ(outcome.poses, static_cast<int>(scans.size()));
+    EXPECT_EQ(linesOf("trajectory.tum"), linesOf("trajectory_odometry.tum"));
+    EXPECT_NE(
+        contentOf(folder / "run/trajectory.tum"),
+        contentOf(folder / "run/trajectory_odometry.tum"));
+    EXPECT_GE(linesOf("loops.csv"), 2u);
+    EXPECT_NE(contentOf(folder / "run/graph.g2o").find("EDGE_SE3:QUAT"), std::string::npos);
+    EXPECT_EQ(metrics()["slam"]["loops_accepted"], outcome.loops);
+    for (const char* rest : {"trajectory.tum.part", "trajectory_kitti.txt.part", "map.part"})
+        EXPECT_FALSE(std::filesystem::exists(folder / (std::string("run/") + rest))) << rest;
+    // The body stays within a metre: it is where it was.
+    const auto distance = [&](const char* name)
+    {
+        const Trajectory path = readTum(folder / (std::string("run/") + name));
+        double farthest = 0;
+        for (const StampedPose& p : path)
+            farthest = std::max(
+                farthest,
+                (p.T_world_imu.p - recording.pose(toSeconds(p.t - recording.start)).p).norm());
+        return farthest;
+    };
+    EXPECT_LT(distance("trajectory.tum"), 1.05 * distance("trajectory_odometry.tum") + 0.002);
+}
+
+TEST_F(SessionTest, WithoutAWayToReadAgainMovesThePointsOfSubmaps)
+{
+    recording.duration = 7;
+    imu = recording.imu();
+    scans = recording.scans();
+    config.method = methodWithShortSubmaps();
+    Player player(imu, scans);
+    const SessionOutcome outcome =
+        Session(config, warnings).run(player, [](double) { return true; });
+    EXPECT_GE(outcome.loops, 1u);
+    EXPECT_FALSE(outcome.undistorted_again);
+    EXPECT_GT(outcome.map_points, 1000u);
+}
+
+TEST_F(SessionTest, WhereNoLoopIsBelievedTheFilesAreThoseOfTheOdometry)
+{
+    const auto run = [&](const char* name)
+    {
+        config.folder = folder / name;
+        std::filesystem::create_directory(config.folder);
+        Player player(imu, scans);
+        return Session(config, warnings).run(player, [](double) { return true; });
+    };
+    EXPECT_EQ(run("with").loops, 0u);
+    config.method.slam.loops = false;
+    EXPECT_EQ(run("without").submaps, 0u);
+    for (const char* name : {"trajectory.tum", "map.ply", "map.bt", "states.csv"})
+        EXPECT_EQ(
+            contentOf(folder / (std::string("with/") + name)),
+            contentOf(folder / (std::string("without/") + name)))
+            << name;
+    EXPECT_FALSE(std::filesystem::exists(folder / "without/submaps"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "with/trajectory_odometry.tum"));
 }

@@ -1,12 +1,19 @@
 #include "taut/slam/Mapper.h"
 
 #include <gtest/gtest.h>
+#include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+#include <mrpt/poses/CPose3D.h>
 
+#include <fstream>
 #include <map>
 
+#include "taut/files/PlyFile.h"
 #include "taut/graph/Register.h"
 #include "taut/graph/SparseGraphOptimizer.h"
 #include "taut/places/NearbyPlaces.h"
+#include "taut/slam/LoopsFile.h"
+#include "taut/slam/SimpleMapFile.h"
 #include "temporary_folder.h"
 #include "walks.h"
 
@@ -152,4 +159,43 @@ TEST_F(AMapper, NeverMergesStoreysThatLookAlike)
         EXPECT_LT(std::abs(height(loop.from) - height(loop.to)), 0.5)
             << loop.from << " to " << loop.to;
     }
+}
+
+TEST_F(AMapper, LeavesFilesThatOthersOpen)
+{
+    const auto mapper = walk(150, 1.003, 1.5e-4);
+    const std::size_t submaps = mapper->graph().vertices.size();
+    mapper->writeClouds();
+    std::size_t points = 0;
+    for (std::size_t i = 0; i < submaps; i++)
+        points += readPlyPoints(
+                      folder / ("submaps0/" + std::string(i < 10 ? "0000" : "000") +
+                                std::to_string(i) + ".ply"))
+                      .size();
+    EXPECT_GT(points, 1000 * submaps);
+
+    writeSimpleMap(folder / "map.simplemap", *mapper);
+    mrpt::maps::CSimpleMap map;
+    ASSERT_TRUE(map.loadFromFile(folder / "map.simplemap"));
+    ASSERT_EQ(map.size(), submaps);
+    const auto [pose, frame] = map.get(3);
+    mrpt::poses::CPose3D mean;
+    pose->getMean(mean);
+    const Vector3d& p = mapper->graph().vertices[3].T_world_submap.p;
+    EXPECT_NEAR(mean.x(), p.x(), 1e-6);
+    EXPECT_NEAR(mean.y(), p.y(), 1e-6);
+    const auto cloud = frame->getObservationByClass<mrpt::obs::CObservationPointCloud>();
+    ASSERT_TRUE(cloud);
+    EXPECT_GT(cloud->pointcloud->size(), 1000u);
+
+    writeLoops(folder / "loops.csv", mapper->loops());
+    std::ifstream table(folder / "loops.csv");
+    std::string line;
+    std::getline(table, line);
+    const auto commas = std::count(line.begin(), line.end(), ',');
+    std::size_t rows = 0;
+    for (; std::getline(table, line); rows++)
+        EXPECT_GE(std::count(line.begin(), line.end(), ','), commas) << line;
+    EXPECT_EQ(rows, mapper->loops().size());
+    EXPECT_EQ(mapper->joinedPlaces().size(), mapper->accepted());
 }

@@ -20,7 +20,8 @@ namespace taut
 namespace
 {
 constexpr int kLargestSide = 16384;  // [pixels] of what Mesa draws at once
-constexpr Rgb kPathColor{230, 0, 110}, kStartColor{255, 255, 255}, kEndColor{60, 0, 30};
+constexpr Rgb kPathColor{230, 0, 110}, kLoopColor{255, 200, 0}, kStartColor{255, 255, 255},
+    kEndColor{60, 0, 30};
 constexpr double kLabelHeight = 15;  // of the font [pixels]
 
 void savePng(const Picture& picture, const std::string& path)
@@ -126,8 +127,7 @@ class OSMesaRenderer::Studio
  private:
     Picture drawGround(const Setting& setting, const std::vector<Pose>& trajectory);
     Layer drawPoints(const Setting& setting, int supersampling);
-    Layer drawPath(
-        const std::vector<Pose>& trajectory, const ViewCamera& camera, int supersampling);
+    Layer drawPath(const RenderScene& scene, const ViewCamera& camera, int supersampling);
 
     Offscreen offscreen_;
 };
@@ -158,11 +158,18 @@ Layer OSMesaRenderer::Studio::drawPoints(const Setting& setting, int supersampli
 }
 
 Layer OSMesaRenderer::Studio::drawPath(
-    const std::vector<Pose>& trajectory, const ViewCamera& camera, int supersampling)
+    const RenderScene& drawn, const ViewCamera& camera, int supersampling)
 {
+    const std::vector<Pose>& trajectory = drawn.trajectory;
     const double pixel = supersampling * camera.metresPerPixel(camera.focus_depth);
     Solids solids(camera);
     solids.addPath(trajectory, 2.2 * pixel, kPathColor);
+    for (const auto& [from, to] : drawn.loops)
+    {
+        solids.addTube(from, to, 1.5 * pixel, kLoopColor);
+        solids.addSphere(from, 3.5 * pixel, kLoopColor);
+        solids.addSphere(to, 3.5 * pixel, kLoopColor);
+    }
     solids.addAxes(trajectory.front(), 45 * pixel, 2 * pixel);
     solids.addSphere(trajectory.front().p, 6 * pixel, kStartColor);
     solids.addSphere(trajectory.back().p, 6 * pixel, kEndColor);
@@ -188,7 +195,7 @@ Picture OSMesaRenderer::Studio::draw(
     if (!scene.trajectory.empty())
     {
         const double opacity_if_hidden = setting.camera.orthographic ? 1 : 0.5;
-        const Layer path = drawPath(scene.trajectory, setting.camera, n);
+        const Layer path = drawPath(scene, setting.camera, n);
         paintOver(world, path, points, opacity_if_hidden);
         words = wordsAtEnds(scene.trajectory, setting.camera, n);
     }

@@ -9,6 +9,7 @@
 #include "taut/core/format.h"
 #include "taut/graph/G2oFile.h"
 #include "taut/slam/LoopsFile.h"
+#include "taut/slam/SimpleMapFile.h"
 
 namespace fs = std::filesystem;
 
@@ -27,12 +28,13 @@ void writeText(const fs::path& path, const std::string& text)
 /** Of the run before in the same folder: nothing of two runs is mixed. */
 void removeSlamFiles(const std::string& folder)
 {
-    for (const char* name : {"trajectory_odometry.tum", "graph.g2o", "loops.csv"})
+    for (const char* name : {"trajectory_odometry.tum", "graph.g2o", "loops.csv", "map.simplemap"})
         fs::remove(fs::path(folder) / name);
     const fs::path submaps = fs::path(folder) / "submaps";
     if (!fs::is_directory(submaps)) return;
     for (const auto& entry : fs::directory_iterator(submaps))
-        if (entry.path().extension() == ".tsm") fs::remove(entry.path());
+        if (entry.path().extension() == ".tsm" || entry.path().extension() == ".ply")
+            fs::remove(entry.path());
 }
 
 double secondsSince(std::chrono::steady_clock::time_point begin)
@@ -211,6 +213,8 @@ void Session::closeLoops()
         path_->tumPath(), folder / "trajectory_odometry.tum", fs::copy_options::overwrite_existing);
     writeG2o((folder / "graph.g2o").string(), mapper_->graph());
     writeLoops((folder / "loops.csv").string(), mapper_->loops());
+    mapper_->writeClouds();
+    writeSimpleMap((folder / "map.simplemap").string(), *mapper_);
     if (!mapper_->moved()) return;
     std::vector<StampedPose> path;
     mapper_->forPath([&](Time t, const Pose& pose) { path.push_back({t, pose}); });
@@ -275,7 +279,8 @@ bool Session::drawPictures() const
     try
     {
         const std::unique_ptr<Renderer> renderer = config_.method.renderer.create();
-        const RenderScene scene{map_->sample(), path_->sample(), caption()};
+        RenderScene scene{map_->sample(), path_->sample(), caption()};
+        if (mapper_) scene.loops = mapper_->joinedPlaces();
         for (const View view : kAllViews)
             renderer->render(
                 scene, view,

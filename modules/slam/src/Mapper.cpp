@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "taut/core/format.h"
+#include "taut/files/PlyFile.h"
 #include "taut/loops/SubmapRegistration.h"
 #include "taut/slam/ClosureGate.h"
 #include "taut/slam/DriftScale.h"
@@ -332,6 +333,30 @@ void Mapper::forPath(const std::function<void(Time, const Pose&)>& visit) const
         // The first state is the last of the submap before.
         for (std::size_t k = i == 0 ? 0 : 1; k < poses.size(); k++)
             visit(submap->scans[k].t, poses[k]);
+    }
+}
+
+std::vector<std::pair<Vector3d, Vector3d>> Mapper::joinedPlaces() const
+{
+    std::vector<std::pair<Vector3d, Vector3d>> places;
+    for (const LoopClosure& loop : loops_)
+        if (loop.verdict == Verdict::Accepted)
+            places.emplace_back(poseOf(loop.from).p, poseOf(loop.to).p);
+    return places;
+}
+
+void Mapper::writeClouds() const
+{
+    for (const GraphVertex& vertex : graph_.vertices)
+    {
+        const std::string name = store_.fileOf(vertex.id);
+        PlyPointWriter file(name.substr(0, name.size() - 4) + ".ply");
+        for (const SubmapPoint& p : store_.at(vertex.id)->points)
+        {
+            const Vector3d in_world = vertex.T_world_submap * Vector3d(p.position.cast<double>());
+            file.append({in_world.cast<float>(), 0});
+        }
+        file.close();
     }
 }
 }  // namespace taut

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "taut/core/Config.h"
@@ -19,6 +20,8 @@ struct RenderScene
     std::vector<Eigen::Vector3f> points;
     std::vector<Pose> trajectory;      //!< T_world_imu in the order of time
     std::vector<std::string> caption;  //!< lines of text: sequence, length, duration, mode
+    /** Places of the body that a loop joined, world frame [m]. */
+    std::vector<std::pair<Vector3d, Vector3d>> loops = {};
 };
 
 enum class View

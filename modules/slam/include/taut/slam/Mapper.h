@@ -56,6 +56,14 @@ class Mapper
      * The first of all is the state that the path began with. Reads the submaps again. */
     void forPath(const std::function<void(Time, const Pose&)>& visit) const;
 
+    /** Of each loop that is believed: where the body was at the begin of both submaps, world [m].
+     */
+    std::vector<std::pair<Vector3d, Vector3d>> joinedPlaces() const;
+
+    /** The points of each submap as a PLY file beside the submap's own, where the graph has them in
+     * the world. Throws std::runtime_error if one cannot be written. */
+    void writeClouds() const;
+
     /** Submap `id` from the disk or from memory. */
     std::shared_ptr<const Submap> submap(VertexId id) const { return store_.at(id); }
 
