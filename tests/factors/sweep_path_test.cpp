@@ -150,7 +150,7 @@ TEST(SweepPath, FollowsTheTrueMotionWhereBothEndsAreTrue)
 
 TEST(SweepPath, CorrectedPathsBeginAtThePreviousState)
 {
-    // Fact 1 of the method sheet, with gaps far beyond any real one.
+    // The path meets both states (docs/equations.md), with gaps far beyond any real one.
     Random random(3);
     for (int i = 0; i < 10; i++)
     {

@@ -55,7 +55,7 @@ struct SteadyTurn
         return out;
     }
 
-    /** The true motion from `end` back to `t`, by the exact relations of the method sheet. */
+    /** The true motion from `end` back to `t`, by its exact relations. */
     MotionDelta motion(Time end, Time t) const
     {
         const NavState k = at(end), x = at(t);

@@ -12,7 +12,7 @@ struct StepNoise
 };
 
 /** Adds the knot of an earlier sample to the chain and propagates the covariance of
- * (alpha, beta, theta) to it (method sheet, error propagation). */
+ * (alpha, beta, theta) to it (docs/equations.md). */
 void extendBackward(PreintegratedImu& chain, const ImuSample& earlier, const StepNoise& noise);
 
 /** Starts a chain at its end t_k. */

@@ -8,7 +8,7 @@
 namespace taut
 {
 /** Kinetic state of the body at the end of a scan. Order of the error state (15): p, v, theta, ba,
- * bg; the rotation is perturbed on the right (method sheet, conventions; paper, equation 16). */
+ * bg; the rotation is perturbed on the right (docs/conventions.md; paper, equation 16). */
 struct NavState
 {
     static constexpr int kSize = 15;

@@ -5,8 +5,9 @@
 
 namespace taut
 {
-/** The IMU factor between two states (paper, equation 9 with erratum 1 of the method sheet): 15
- * rows in the order p, v, theta, ba, bg. The jacobians follow NavState's right perturbation. */
+/** The IMU factor between two states (paper, equation 9 with the sign of gravity that
+ * docs/equations.md explains): 15 rows in the order p, v, theta, ba, bg. The jacobians follow
+ * NavState's right perturbation. */
 struct ImuResidual
 {
     NavState::Vector residual;    //!< [m, m/s, rad, m/s^2, rad/s]

@@ -14,11 +14,11 @@ struct Sweep
     Scan scan;         //!< raw points in the body frame at their own times
     Pose T_imu_lidar;  //!< where the rays began
     Undistortion mode = Undistortion::None;
-    PreintegratedImu motion;  //!< from the end of the sweep back to `begin`
+    PreintegratedImu motion;                    //!< from the end of the sweep back to `begin`
     Vector3d previous_rate = Vector3d::Zero();  //!< that the motion was integrated with [rad/s]
     ImuNoise noise;                             //!< the same
     bool with_imu = true;                       //!< false: by constant velocity
-    NavState prior_begin;     //!< the states before the sweep was matched
+    NavState prior_begin;                       //!< the states before the sweep was matched
     NavState prior_end;
     NavState begin;  //!< the state at the end of the sweep before, as this sweep left it
     NavState end;    //!< the state at the end of this sweep, as this sweep left it

@@ -9,7 +9,7 @@
 
 namespace taut
 {
-/** How the points of a sweep are undistorted (method sheet, estimation). */
+/** How the points of a sweep are undistorted (docs/equations.md). */
 enum class Undistortion
 {
     None,         //!< not at all: every point is seen from the pose at the scan's end
