@@ -1,6 +1,8 @@
 #include "Options.h"
 
+#include <cmath>
 #include <map>
+#include <sstream>
 #include <thread>
 
 #include "../LogArguments.h"
@@ -16,6 +18,32 @@ int verbosityOf(const std::string& level)
     if (it == levels.end())
         throw UsageError("-v: '" + level + "' is none of ERROR, WARN, INFO, DEBUG");
     return it->second;
+}
+/** "x,y,z,yaw" [m, degrees] to numbers [m, rad]. */
+std::vector<double> startOf(const std::string& text)
+{
+    std::vector<double> numbers;
+    std::istringstream words(text);
+    for (std::string word; std::getline(words, word, ',');)
+    {
+        std::size_t used = 0;
+        double number = 0;
+        try
+        {
+            number = std::stod(word, &used);
+        }
+        catch (const std::exception&)  // told below
+        {
+            used = 0;
+        }
+        if (used == 0 || used != word.size() || !std::isfinite(number))
+            throw UsageError("--start-at: '" + word + "' is no number");
+        numbers.push_back(number);
+    }
+    if (numbers.size() != 4)
+        throw UsageError("--start-at: four numbers are wanted, x,y,z,yaw, in '" + text + "'");
+    numbers[3] *= M_PI / 180;
+    return numbers;
 }
 }  // namespace
 
@@ -39,6 +67,16 @@ bool parseOptions(int argc, char** argv, Options& o)
         "s", "set", "Override a key of the method file, as estimation.undistortion=imu", false,
         "SECTION.KEY=VALUE", cmd);
     LogArguments log(cmd);
+    TCLAP::ValueArg<std::string> map(
+        "m", "map", "Results of an earlier run of this place: the run is told in its frame", false,
+        "", "EARLIER/", cmd);
+    TCLAP::SwitchArg localize("", "localize", "The map of -m stays as it is (default)", cmd);
+    TCLAP::SwitchArg extend(
+        "", "extend", "The map of -m and this run become one map in the folder of -o", cmd);
+    TCLAP::ValueArg<std::string> start(
+        "", "start-at",
+        "Where the run begins in the map of -m, to a metre and ten degrees [m, degrees]", false, "",
+        "X,Y,Z,YAW", cmd);
     TCLAP::ValueArg<int> first(
         "", "only-first-n", "End after that many scans (0: all)", false, 0, "N", cmd);
     TCLAP::MultiArg<std::string> plugins(
@@ -57,7 +95,9 @@ bool parseOptions(int argc, char** argv, Options& o)
         "v", "verbosity", "ERROR, WARN, INFO or DEBUG (default INFO)", false, "INFO", "LEVEL", cmd);
     const Usage usage{
         {"-i rawlogs/hall_fast.rawlog -o out/hall_fast",
-         "-i LOG.rawlog -o out/paper -c config/paper.yaml --threads 2"},
+         "-i LOG.rawlog -o out/paper -c config/paper.yaml --threads 2",
+         "-i TODAY.rawlog -o out/today -m out/yesterday",
+         "-i TODAY.rawlog -o out/both -m out/yesterday --extend"},
         &show};
     if (!parseCommandLine(cmd, argc, argv, usage)) return false;
 
@@ -66,6 +106,13 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.config = config.getValue();
     o.settings = set.getValue();
     o.rig = log.rig();
+    o.map = map.getValue();
+    o.extend_map = extend.getValue();
+    if (!start.getValue().empty()) o.start_at = startOf(start.getValue());
+    if (localize.getValue() && o.extend_map)
+        throw UsageError("--localize and --extend exclude each other");
+    if (o.map.empty() && (localize.getValue() || o.extend_map || !o.start_at.empty()))
+        throw UsageError("--localize, --extend and --start-at need a map: -m");
     o.lidar_label = log.lidarLabel();
     o.imu_label = log.imuLabel();
     o.from_time = log.fromTime();

@@ -13,6 +13,9 @@ struct Options
     std::string config;                 //!< method file; empty: config/default.yaml
     std::vector<std::string> settings;  //!< section.key=value, over the method file
     std::string rig;
+    std::string map;               //!< results of an earlier run; empty: none
+    bool extend_map = false;       //!< its submaps may move and belong to the results
+    std::vector<double> start_at;  //!< x, y, z [m], yaw [rad] in that map; empty: not known
     std::string lidar_label, imu_label;  //!< regular expressions; empty: the only sensor there
     double from_time = 0,
            to_time = std::numeric_limits<double>::infinity();  //!< [s] from the start

@@ -47,8 +47,22 @@ RawlogConfig rawlogConfig(const Options& o, const Rig& rig)
     return c;
 }
 
+KnownMap knownMap(const Options& o)
+{
+    if (!fs::is_directory(o.map)) throw std::runtime_error("'" + o.map + "' is not a folder");
+    if (!fs::exists(fs::path(o.map) / "graph.g2o"))
+        throw std::runtime_error(
+            "'" + o.map + "' holds no map: graph.g2o is missing, which taut-slam writes");
+    KnownMap map{o.map, o.extend_map, {}};
+    const std::vector<double>& at = o.start_at;
+    if (!at.empty()) map.T_map_start = Pose{expSO3({0, 0, at[3]}), {at[0], at[1], at[2]}};
+    return map;
+}
+
 void makeFolder(const Options& o)
 {
+    if (!o.map.empty() && fs::exists(o.output) && fs::equivalent(o.map, o.output))
+        throw UsageError("-o is the folder of -m: the map would be overwritten");
     if (fs::exists(o.output) && !fs::is_directory(o.output))
         throw std::runtime_error("'" + o.output + "' is not a folder");
     if (fs::exists(fs::path(o.output) / "trajectory.tum") && !o.overwrite)
@@ -76,6 +90,7 @@ class Run
         session_.folder = options.output;
         session_.input = options.input;
         session_.threads = options.threads;
+        if (!options.map.empty()) session_.known_map = knownMap(options);
         session_.pictures = !options.no_pictures;
     }
 
@@ -87,6 +102,8 @@ class Run
             std::cout << session_.method.effective;
             return 0;
         }
+        if (session_.known_map && !session_.method.slam.loops)
+            throw UsageError("-m needs loops: slam.loops is false");
         PrefetchedRawlog log(rawlogConfig(options_, rig_), warnings_.sink());
         makeFolder(options_);
         Session session(session_, warnings_, [this](const Event& e) { describe(e); });
@@ -138,10 +155,14 @@ class Run
         const bool pictures = session_.pictures && o.poses > 0 && !o.pictures_failed;
         std::printf(
             "%d poses, %.2f m, %.1f s of recording in %.1f s (%.1f ms a scan), %zu map points\n"
-            "%zu submaps, %zu loops closed%s\n"
+            "%zu submaps, %zu loops%s\n"
             "results in %s: trajectory.tum, map.ply, map.ot, map.bt, %smetrics.json\n",
             o.poses, o.length, o.duration, o.wall_seconds, o.milliseconds_a_scan, o.map_points,
-            o.submaps, o.loops, o.undistorted_again ? ", every point undistorted again" : "",
+            o.submaps, o.loops,
+            o.undistorted_again ? " closed, every point undistorted again"
+            : o.corrected       ? " closed"
+            : o.loops > 0       ? " seen; the odometry has no gap to close"
+                                : "",
             options_.output.c_str(), pictures ? "snapshot_*.png, " : "");
     }
 

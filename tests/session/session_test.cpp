@@ -167,12 +167,16 @@ TEST_F(SessionTest, TwoAtOnceDoNotDisturbEachOther)
 
 namespace
 {
-/** Of submaps as short as a recording of some seconds asks for. */
+/** Of submaps as short as a recording of some seconds asks for, and loops that are taken to be so
+ * exact that the millimetres of this odometry are gaps. */
 Method methodWithShortSubmaps()
 {
-    ConfigSection root(parseYaml(
-        "{slam: {submap: {min_duration: 0.8, max_duration: 1, min_length: 0.1, length_share: 0.01},"
-        " places: {min_way: 0.1}}, initialization: {rest_duration: 1.2}}"));
+    ConfigSection root(
+        parseYaml("{slam: {submap: {point_spacing: 0.02, min_duration: 0.8, max_duration: 1, "
+                  "min_length: 0.1, length_share: 0.01},"
+                  " places: {min_way: 0.1}, closure: {position_sigma: 1.0e-5, rotation_sigma: "
+                  "1.0e-6, points: 40000}}, "
+                  "initialization: {rest_duration: 1.2}}"));
     return Method::read(root, std::nullopt);
 }
 
@@ -209,8 +213,8 @@ TEST_F(SessionTest, ClosesLoopsAndUndistortsAgain)
     EXPECT_EQ(second, player.size());
     EXPECT_EQ(outcome.poses, static_cast<int>(scans.size()));
     EXPECT_EQ(linesOf("trajectory.tum"), linesOf("trajectory_odometry.tum"));
-    EXPECT_NE(
-        contentOf(folder / "run/trajectory.tum"),
+    EXPECT_TRUE(
+        contentOf(folder / "run/trajectory.tum") !=
         contentOf(folder / "run/trajectory_odometry.tum"));
     EXPECT_GE(linesOf("loops.csv"), 2u);
     EXPECT_NE(contentOf(folder / "run/graph.g2o").find("EDGE_SE3:QUAT"), std::string::npos);

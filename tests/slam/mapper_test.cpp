@@ -5,13 +5,15 @@
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/poses/CPose3D.h>
 
+#include <filesystem>
 #include <fstream>
 #include <map>
 
 #include "taut/files/PlyFile.h"
-#include "taut/graph/Register.h"
+#include "taut/graph/G2oFile.h"
 #include "taut/graph/SparseGraphOptimizer.h"
 #include "taut/places/NearbyPlaces.h"
+#include "taut/places/PlacesByView.h"
 #include "taut/slam/LoopsFile.h"
 #include "taut/slam/SimpleMapFile.h"
 #include "temporary_folder.h"
@@ -28,6 +30,7 @@ class AMapper : public ::testing::Test
     AMapper()
     {
         config.places = Prototype<PlaceRecognizer>(std::make_shared<NearbyPlaces>());
+        config.appearance = Prototype<PlaceRecognizer>(std::make_shared<PlacesByView>());
         config.optimizer = Prototype<GraphOptimizer>(std::make_shared<SparseGraphOptimizer>());
     }
 
@@ -116,6 +119,15 @@ TEST_F(AMapper, LeavesAPathWithoutLoopsAsItIs)
     for (const auto& [t, pose] : path) EXPECT_LT((pose.p - odometry_path.at(t).p).norm(), 1e-9);
 }
 
+TEST_F(AMapper, LeavesAPathWithoutDriftAsItIsThoughItSeesLoops)
+{
+    const auto mapper = walk(220, 1, 0);
+    EXPECT_GE(mapper->accepted(), 4u);
+    EXPECT_FALSE(mapper->moved());
+    for (const auto& [t, pose] : pathOf(*mapper))
+        EXPECT_LT((pose.p - odometry_path.at(t).p).norm(), 1e-9);
+}
+
 TEST_F(AMapper, GivesTheSameBitsWithTwoThreads)
 {
     const auto one = walk(150, 1.003, 1.5e-4, 1), two = walk(150, 1.003, 1.5e-4, 2);
@@ -198,4 +210,152 @@ TEST_F(AMapper, LeavesFilesThatOthersOpen)
         EXPECT_GE(std::count(line.begin(), line.end(), ','), commas) << line;
     EXPECT_EQ(rows, mapper->loops().size());
     EXPECT_EQ(mapper->joinedPlaces().size(), mapper->accepted());
+}
+
+namespace
+{
+/** A run that leaves its map in a folder, as a session does, and another one that uses it. */
+class AKnownMap : public AMapper
+{
+ protected:
+    /** Leaves graph and submaps of a lap in `folder`/first. */
+    void mapTheRing()
+    {
+        std::filesystem::create_directories(folder / "first");
+        executor = std::make_unique<Executor>(1);
+        Mapper mapper(config, folder / "first/submaps", *executor, {});
+        go(mapper, 0, 125, ring(), 1);
+        writeG2o(folder / "first/graph.g2o", mapper.resultGraph());
+    }
+
+    /** Carries the LiDAR from a place of the ring on; the odometry begins at a frame of its own. */
+    void go(Mapper& mapper, double from, double length, const Scene& scene, unsigned seed)
+    {
+        truth.clear();
+        DriftingOdometry odometry;
+        const auto way = [&](double s) { return aroundRing(from + s); };
+        odometry.start(way(0));
+        odometry.estimate = kStart;
+        if (from == 0) odometry.estimate = odometry.truth;
+        Random random(seed);
+        const Time begin = 1'700'000'000'000'000'000;
+        truth[begin] = odometry.truth;
+        mapper.start(estimateAt(begin, odometry.estimate));
+        carry(
+            scene, way, length, odometry, random,
+            [&](const NavEstimate& e, const std::vector<Vector3d>& points)
+            {
+                truth[e.state.t] = odometry.truth;
+                mapper.add(e, points, {});
+            });
+        mapper.finish();
+    }
+
+    std::unique_ptr<Mapper> second(
+        const KnownMap& map, double from, double length, const Scene& scene)
+    {
+        auto mapper = std::make_unique<Mapper>(
+            config, folder / ("second" + std::to_string(runs++) + "/submaps"), *executor,
+            [this](const Warning& w) { warnings.push_back(w); });
+        mapper->use(map);
+        go(*mapper, from, length, scene, 5);
+        return mapper;
+    }
+
+    const Pose kStart{expSO3({0, 0, 0.9}), {3, -8, 0.4}};
+};
+}  // namespace
+
+TEST_F(AKnownMap, IsRecognisedWithoutAGuessAndStaysAsItIs)
+{
+    mapTheRing();
+    const PoseGraph before = readG2o(folder / "first/graph.g2o");
+    for (const double from : {17.0, 52.0, 88.0})
+    {
+        const auto mapper = second({folder / "first", false, {}}, from, 30, ring());
+        EXPECT_FALSE(mapper->isApart()) << from;
+        EXPECT_LT(errorOf(pathOf(*mapper)), 0.02) << from;
+        for (std::size_t i = 0; i < before.vertices.size(); i++)
+            EXPECT_EQ(
+                mapper->graph().vertices[i].T_world_submap.p, before.vertices[i].T_world_submap.p);
+        EXPECT_EQ(mapper->resultGraph().vertices.size(), mapper->submaps());
+    }
+}
+
+TEST_F(AKnownMap, WithThingsMovedIsRecognised)
+{
+    mapTheRing();
+    Scene moved = ring();
+    for (std::size_t i = 1; i < moved.obstacles.size(); i += 3)
+    {
+        moved.obstacles[i].min.x() += 0.8;
+        moved.obstacles[i].max.x() += 0.8;
+    }
+    const auto mapper = second({folder / "first", false, {}}, 17, 40, moved);
+    EXPECT_FALSE(mapper->isApart());
+    EXPECT_LT(errorOf(pathOf(*mapper)), 0.05);
+}
+
+TEST_F(AKnownMap, OfAnotherPlaceIsNotRecognised)
+{
+    mapTheRing();
+    Scene other;
+    other.room = {{-23, -17, 0}, {23, 17, 4}};
+    other.obstacles = {
+        {{-14, -9, 0}, {-2, 9, 4}}, {{4, -8, 0}, {14, -2, 4}}, {{5, 3, 0}, {13, 9, 4}}};
+    const auto mapper = second({folder / "first", false, {}}, 17, 40, other);
+    EXPECT_TRUE(mapper->isApart());
+    EXPECT_FALSE(mapper->moved());
+    ASSERT_FALSE(warnings.empty());
+    EXPECT_EQ(warnings.back().kind, "place_unknown");
+}
+
+TEST_F(AKnownMap, IsFoundFromAStartThatIsTold)
+{
+    mapTheRing();
+    // Where the first pose is in the map, told a little wrong.
+    const Pose T_map_start = aroundRing(17) * Pose{expSO3({0, 0, 0.1}), {0.4, -0.3, 0}};
+    const auto mapper = second({folder / "first", false, T_map_start}, 17, 12, ring());
+    EXPECT_FALSE(mapper->isApart());
+    EXPECT_LT(errorOf(pathOf(*mapper)), 0.02);
+}
+
+TEST_F(AKnownMap, IsExtendedByARunThatGoesOn)
+{
+    mapTheRing();
+    const auto mapper = second({folder / "first", true, {}}, 60, 30, ring());
+    ASSERT_FALSE(mapper->isApart());
+    const PoseGraph all = mapper->resultGraph();
+    EXPECT_EQ(
+        all.vertices.size(),
+        readG2o(folder / "first/graph.g2o").vertices.size() + mapper->submaps());
+    for (const GraphVertex& v : all.vertices) EXPECT_NO_THROW(mapper->submap(v.id));
+    const std::string folder_of_both = folder / ("second" + std::to_string(runs - 1));
+    writeG2o(folder_of_both + "/graph.g2o", all);
+    // The result is a map like any other.
+    const auto third = second({folder_of_both, false, {}}, 80, 25, ring());
+    EXPECT_FALSE(third->isApart());
+}
+
+TEST_F(AKnownMap, ThatIsDamagedIsRefused)
+{
+    mapTheRing();
+    const auto fault = [&](const std::string& map) -> std::string
+    {
+        try
+        {
+            Mapper mapper(config, folder / "refused/submaps", *executor, {});
+            mapper.use({map, false, {}});
+        }
+        catch (const std::runtime_error& e)
+        {
+            return e.what();
+        }
+        return "";
+    };
+    EXPECT_NE(fault(folder / "nowhere").find("graph.g2o"), std::string::npos);
+    std::filesystem::resize_file(folder / "first/submaps/00002.tsm", 1000);
+    EXPECT_NE(fault(folder / "first").find("00002.tsm"), std::string::npos);
+    std::ofstream(folder / "first/graph.g2o") << "";
+    EXPECT_NE(fault(folder / "first").find("no submaps"), std::string::npos);
 }

@@ -139,6 +139,9 @@ void LoopJudgeConfig::declare(ConfigSection& s)
     s.key("min_overlap", min_overlap, {0, 1}, "of what both could see");
     s.key("min_inliers", min_inliers, {0, 1}, "of these on a surface of the other");
     s.key("max_conflicts", max_conflicts, {0, 1}, "of the common cells in space seen free");
+    s.key(
+        "max_conflicts_between", max_conflicts_between, {0, 1},
+        "the same between recordings: furniture moves");
     s.key("min_cells", min_cells, {1, 1e6}, "of 0.5 m that both could see");
     s.key("min_sectors", min_sectors, {1, 8}, "of eight around that hold inliers");
     s.key("max_disagreement", max_disagreement, kPositive, "m, of the registrations");
@@ -200,7 +203,8 @@ LoopClosure LoopJudge::judge(
         return refuse(format("overlap: %.0f %% in %d cells", 100 * e.overlap, e.cells));
     if (e.inliers < config_.min_inliers)
         return refuse(format("fit: %.0f %% of the common points on a surface", 100 * e.inliers));
-    if (e.conflicts > config_.max_conflicts)
+    if (e.conflicts >
+        (candidate.between_recordings ? config_.max_conflicts_between : config_.max_conflicts))
         return refuse(format(
             "free space: %.1f %% of the common cells lie where the other saw through",
             100 * e.conflicts));

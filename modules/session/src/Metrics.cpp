@@ -117,6 +117,7 @@ std::string Metrics::json(const Summary& s, const WarningLog& warnings) const
             {"loops_accepted", s.loops_accepted},
             {"loops_pending", s.loops_pending},
             {"loops_withdrawn", s.loops_withdrawn},
+            {"path_corrected", s.path_corrected},
             {"undistorted_again", s.second_pass},
             {"drift_scale", s.drift_scale},
             {"seconds", s.slam_seconds},

@@ -49,9 +49,10 @@ bool undistortAgain(
 void moveSubmaps(const Mapper& mapper, const std::vector<Pose>& path, MapExport& map)
 {
     std::size_t first = 0;  // of the submap, in the path
-    for (const GraphVertex& vertex : mapper.graph().vertices)
+    for (std::size_t v = mapper.graph().vertices.size() - mapper.submaps();
+         v < mapper.graph().vertices.size(); v++)
     {
-        const auto submap = mapper.submap(vertex.id);
+        const auto submap = mapper.submap(mapper.graph().vertices[v].id);
         std::vector<std::vector<Vector3d>> by_scan(submap->scans.size());
         for (const SubmapPoint& p : submap->points)
         {

@@ -43,7 +43,8 @@ double secondsSince(std::chrono::steady_clock::time_point begin)
 }
 
 /** Warnings which say that a part of the input was not used. */
-constexpr const char* kUnused[] = {"late_imu", "imu_late", "imu_silent", "lidar_ended"};
+constexpr const char* kUnused[] = {
+    "late_imu", "imu_late", "imu_silent", "lidar_ended", "place_unknown"};
 }  // namespace
 
 Session::Session(const SessionConfig& config, WarningLog& warnings, EventSink events)
@@ -64,10 +65,15 @@ Session::Session(const SessionConfig& config, WarningLog& warnings, EventSink ev
         fs::remove(rig);  // of the run before
     else
         writeText(rig, config_.rig);
+    if (config_.known_map && fs::equivalent(config_.known_map->folder, config_.folder))
+        throw std::runtime_error("the results would overwrite the map that they are joined to");
     removeSlamFiles(config_.folder);
     if (config_.method.slam.loops)
+    {
         mapper_ = std::make_unique<Mapper>(
             config_.method.slam, config_.folder + "/submaps", executor_, warnings_.sink());
+        if (config_.known_map) mapper_->use(*config_.known_map);
+    }
 }
 
 Session::~Session() = default;
@@ -194,8 +200,9 @@ SessionOutcome Session::finish(const StreamProgress& log, bool incomplete, bool 
     outcome.wall_seconds = wall_seconds_;
     outcome.milliseconds_a_scan = metrics_.meanMilliseconds();
     outcome.map_points = map_->points();
-    if (mapper_) outcome.submaps = mapper_->graph().vertices.size();
+    if (mapper_) outcome.submaps = mapper_->submaps();
     if (mapper_) outcome.loops = mapper_->accepted();
+    if (mapper_) outcome.corrected = mapper_->moved();
     outcome.undistorted_again = undistorted_again_;
     outcome.partly = interrupted || usedPartly(log, incomplete);
     return outcome;
@@ -211,7 +218,7 @@ void Session::closeLoops()
     const fs::path folder = config_.folder;
     fs::copy_file(
         path_->tumPath(), folder / "trajectory_odometry.tum", fs::copy_options::overwrite_existing);
-    writeG2o((folder / "graph.g2o").string(), mapper_->graph());
+    writeG2o((folder / "graph.g2o").string(), mapper_->resultGraph());
     writeLoops((folder / "loops.csv").string(), mapper_->loops());
     mapper_->writeClouds();
     writeSimpleMap((folder / "map.simplemap").string(), *mapper_);
@@ -325,11 +332,12 @@ void Session::writeMetrics(const StreamProgress& log, bool incomplete, bool inte
                 loops.begin(), loops.end(),
                 [&](const LoopClosure& loop) { return loop.verdict == verdict; }));
         };
-        s.submaps = mapper_->graph().vertices.size();
+        s.submaps = mapper_->submaps();
         s.loops_judged = mapper_->loops().size();
         s.loops_accepted = count(Verdict::Accepted);
         s.loops_pending = count(Verdict::Pending);
         s.loops_withdrawn = count(Verdict::Withdrawn);
+        s.path_corrected = mapper_->moved();
         s.drift_scale = mapper_->scaleOfDrift();
         s.slam_seconds = mapper_->seconds();
     }

@@ -1,27 +1,39 @@
 #include "taut/slam/Mapper.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 
 #include "taut/core/format.h"
 #include "taut/files/PlyFile.h"
+#include "taut/graph/G2oFile.h"
 #include "taut/loops/SubmapRegistration.h"
 #include "taut/slam/ClosureGate.h"
-#include "taut/slam/DriftScale.h"
 #include "taut/slam/PathCorrection.h"
+#include "taut/submaps/SubmapFile.h"
+
+namespace fs = std::filesystem;
 
 namespace taut
 {
 namespace
 {
-constexpr std::size_t kMaps = 12;    // of submaps, kept in memory
-constexpr int kRounds = 4;           // over the whole graph in the end
-constexpr double kBeyond = 0.0027;   // of true gaps are as large as one that is not believed alone
-constexpr double kEdgeTorn = 1e-6;   // likelihood of an edge, below which a loop tears it
-constexpr VertexId kNeighbours = 6;  // submaps along the path that two loops may be apart
+constexpr std::size_t kMaps = 12;           // of submaps, kept in memory
+constexpr double kBetweenRecordings = 1e5;  // [m] on the way from one recording to the next
+constexpr int kRounds = 4;                  // over the whole graph in the end
+constexpr double kBeyond = 0.0027;  // of true gaps are as large as one that is not believed alone
+constexpr double kGapsByChance = 0.01;  // of runs without drift have gaps as large
+constexpr double kEdgeTorn = 1e-6;      // likelihood of an edge, below which a loop tears it
+
+// Two joints say the same of where the run is in the map.
+constexpr double kJointApart = 0.5;    // [m]
+constexpr double kJointTurned = 0.03;  // [rad]
+/** Share of conflicts that makes a joint worth 1/e: places that look alike differ by more. */
+constexpr double kTellingConflicts = 0.002;
+constexpr double kClearly = 3;  // times the evidence of the second best
 
 /** Adds the time of its life to a sum. */
 class Watch
@@ -47,12 +59,16 @@ Pose nextInFrameOf(const Submap& submap, const Submap& next)
     return submap.last().T_submap_imu * next.scans.front().T_submap_imu.inverse();
 }
 
-/** What two loops say together of a circle: in directions that both show. */
-Matrix6d harmonicSum(const Matrix6d& a, const Matrix6d& b)
+/** Of T_from_to; directions that the loop does not show are anywhere. */
+Matrix6d covarianceOfLoop(const LoopClosure& loop)
 {
-    // (a^-1 + b^-1)^-1 = a (a + b)^-1 b, which holds where one of them is singular, too.
-    const Matrix6d sum = a * (a + b).completeOrthogonalDecomposition().solve(b);
-    return 0.5 * (sum + sum.transpose());
+    constexpr double kAnywhere = 1e4;  // [m^2]
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(loop.information);
+    const double least = 1e-9 * eigen.eigenvalues().maxCoeff();
+    Vector6d variances;
+    for (int i = 0; i < 6; i++)
+        variances[i] = eigen.eigenvalues()[i] > least ? 1 / eigen.eigenvalues()[i] : kAnywhere;
+    return eigen.eigenvectors() * variances.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 RelativeEdge odometryEdge(const Submap& from, const Submap& to)
@@ -73,12 +89,49 @@ Mapper::Mapper(const SlamConfig& config, std::string folder, Executor& executor,
     : config_(config),
       executor_(executor),
       warn_(std::move(warn)),
-      store_(std::move(folder)),
+      store_(folder),
+      folder_(std::move(folder)),
       places_(config.places.create()),
+      appearance_(config.appearance.create()),
       optimizer_(config.optimizer.create()),
       judge_(config.judge, executor),
       builder_(config.submap, [this](Submap submap) { take(std::move(submap)); })
 {
+}
+
+void Mapper::use(const KnownMap& map)
+{
+    const PoseGraph known = readG2o((fs::path(map.folder) / "graph.g2o").string());
+    if (known.vertices.empty())
+        throw std::runtime_error("the map in '" + map.folder + "' has no submaps");
+    const std::string submaps = (fs::path(map.folder) / "submaps").string();
+    known_ = map;
+    double path = 0;
+    for (const GraphVertex& vertex : known.vertices)
+    {
+        const std::string name = format("/%05lld.tsm", static_cast<long long>(vertex.id));
+        const Submap submap = readSubmap(submaps + name);
+        if (submap.id != vertex.id)
+            throw std::runtime_error(
+                "'" + submaps + name + "' is another submap than its name says");
+        if (map.extend)
+            fs::copy_file(submaps + name, folder_ + name, fs::copy_options::overwrite_existing);
+        graph_.vertices.push_back(vertex);
+        if (!map.extend) graph_.vertices.back().fixed = true;
+        first_own_id_ = std::max(first_own_id_, vertex.id + 1);
+        path = std::max(path, submap.path_end);
+        places_->add(submap);
+        appearance_->add(submap);
+    }
+    if (map.extend)
+    {
+        graph_.relative_edges = known.relative_edges;
+        graph_.gravity_edges = known.gravity_edges;
+        weights_.assign(graph_.relative_edges.size(), 1);
+    }
+    store_.readAlsoFrom(submaps);
+    first_own_ = graph_.vertices.size();
+    builder_.goOnFrom(first_own_id_, path + kBetweenRecordings);
 }
 
 void Mapper::take(Submap submap)
@@ -86,7 +139,7 @@ void Mapper::take(Submap submap)
     const Watch watch(seconds_);
     const VertexId id = submap.id;
     Pose T_world_submap = submap.T_world_submap;
-    if (!graph_.vertices.empty())
+    if (submaps() > 0)
     {
         const auto before = store_.at(graph_.vertices.back().id);
         graph_.relative_edges.push_back(odometryEdge(*before, submap));
@@ -94,12 +147,14 @@ void Mapper::take(Submap submap)
             graph_.vertices.back().T_world_submap * graph_.relative_edges.back().T_from_to;
         weights_.push_back(1);
     }
-    graph_.vertices.push_back({id, T_world_submap, graph_.vertices.empty()});
+    graph_.vertices.push_back({id, T_world_submap, submaps() == 0 && !joined_});
     const Matrix3d tilt = submap.up_covariance.ldlt().solve(Matrix3d::Identity());
     graph_.gravity_edges.push_back({id, submap.up_submap, 0.5 * (tilt + tilt.transpose())});
     covariance_.reset();
     places_->add(submap);
+    appearance_->add(submap);
     store_.add(std::move(submap));
+    judgeStart(id);
     searchFor(id);
     weighPending();
 }
@@ -111,11 +166,22 @@ void Mapper::finish()
     for (int round = 0; round < kRounds; round++)
     {
         const std::size_t judged = loops_.size(), accepted = accepted_;
-        for (std::size_t i = 0; i < graph_.vertices.size(); i++) searchFor(graph_.vertices[i].id);
+        for (std::size_t i = first_own_; i < graph_.vertices.size(); i++)
+            searchFor(graph_.vertices[i].id);
         weighPending();
         learnDrift();
         if (round > 0 && loops_.size() == judged && accepted_ == accepted) break;
     }
+    weighGaps();
+    if (isApart()) weighJoints(true);
+    if (isApart() && warn_)
+        warn_(
+            {graph_.vertices.size() > first_own_
+                 ? store_.at(graph_.vertices[first_own_].id)->scans.front().t
+                 : 0,
+             "place_unknown",
+             "no place of the map in '" + known_->folder +
+                 "' was recognised: the results are in a frame of their own"});
     for (LoopClosure& loop : loops_)
         if (loop.verdict == Verdict::Pending)
             loop.reason = format(
@@ -168,8 +234,38 @@ void Mapper::searchFor(VertexId id)
 {
     const PlaceKnowledge knowledge{
         graph_, [this](VertexId from, VertexId to) { return covarianceOf(from, to); }};
-    for (const LoopCandidate& candidate : places_->candidates(id, knowledge))
-        if (judged_.insert({candidate.from, candidate.to}).second) judge(candidate);
+    for (const PlaceRecognizer* recognizer : {places_.get(), appearance_.get()})
+        for (LoopCandidate candidate : recognizer->candidates(id, knowledge))
+        {
+            if (!isOwn(candidate.to)) continue;
+            candidate.between_recordings = !isOwn(candidate.from);
+            if (judged_.insert({candidate.from, candidate.to}).second) judge(candidate);
+        }
+}
+
+void Mapper::judgeStart(VertexId id)
+{
+    if (!known_ || !known_->T_map_start || joined_ || id != first_own_id_) return;
+    // The nearest place of the map to where the run is said to begin: position and heading.
+    const Pose T_map_submap = *known_->T_map_start;
+    const GraphVertex* nearest = nullptr;
+    for (std::size_t i = 0; i < first_own_; i++)
+    {
+        const GraphVertex& v = graph_.vertices[i];
+        const auto distance = [&](const GraphVertex& to)
+        { return (to.T_world_submap.p - T_map_submap.p).norm(); };
+        if (nearest == nullptr || distance(v) < distance(*nearest)) nearest = &v;
+    }
+    if (nearest == nullptr) return;
+    LoopCandidate candidate;
+    candidate.from = nearest->id;
+    candidate.to = id;
+    candidate.T_from_to = nearest->T_world_submap.inverse() * T_map_submap;
+    candidate.covariance.diagonal() << 1, 1, 0.25, 0.03, 0.03, 0.03;
+    candidate.source = "start";
+    candidate.between_recordings = true;
+    judged_.insert({candidate.from, candidate.to});
+    judge(candidate);
 }
 
 void Mapper::judge(const LoopCandidate& candidate)
@@ -177,29 +273,31 @@ void Mapper::judge(const LoopCandidate& candidate)
     loops_.push_back(judge_.judge(candidate, viewOf(candidate.from), viewOf(candidate.to)));
 }
 
-bool Mapper::agrees(const LoopClosure& a, const LoopClosure& b) const
+bool Mapper::agrees(const LoopClosure& a, const LoopClosure& b)
 {
-    // Round the small circle that both loops make with the path beside them.
+    // Round the circle that both loops make with the path beside them.
     if (a.from == b.from && a.to == b.to) return false;
-    if (std::abs(a.from - b.from) > kNeighbours || std::abs(a.to - b.to) > kNeighbours)
-        return false;
-    const Pose there = a.T_from_to * between(a.to, b.to);
-    const Pose back = between(a.from, b.from) * b.T_from_to;
-    Matrix6d covariance = Matrix6d::Zero();
-    for (const RelativeEdge& edge : graph_.relative_edges)
+    const std::optional<Matrix6d> of_from = covarianceOf(a.from, b.from);
+    const std::optional<Matrix6d> of_to = covarianceOf(a.to, b.to);
+    if (!of_from || !of_to) return false;
+    const Pose beside_to = between(a.to, b.to), beside_from = between(a.from, b.from);
+    const Pose there = a.T_from_to * beside_to;
+    const Pose back = beside_from * b.T_from_to;
+    const auto carried = [](const Matrix6d& covariance, const Pose& by)
     {
-        if (edge.kind != EdgeKind::Odometry) continue;
-        const auto lies_between = [&edge](VertexId x, VertexId y)
-        { return edge.from >= std::min(x, y) && edge.to <= std::max(x, y); };
-        if (!lies_between(a.from, b.from) && !lies_between(a.to, b.to)) continue;
-        covariance += edge.information.ldlt().solve(Matrix6d::Identity());
-    }
+        const Matrix6d J = rightFromLeft(by);
+        return Matrix6d(J * covariance * J.transpose());
+    };
+    const Matrix6d covariance = carried(covarianceOfLoop(a), beside_to) + *of_to +
+                                carried(*of_from, b.T_from_to) + covarianceOfLoop(b);
     const Vector6d gap = rightErrorTo(there, back);
-    return testGap(gap, covariance, harmonicSum(a.information, b.information)).isWithin(kBeyond);
+    const double chi2 = gap.dot(covariance.ldlt().solve(gap));
+    return chi2 < chiSquareBeyond(kBeyond, std::min(a.evidence.directions, b.evidence.directions));
 }
 
 void Mapper::weighPending()
 {
+    if (isApart()) weighJoints(false);
     bool changed = true;
     while (changed)
     {
@@ -207,6 +305,7 @@ void Mapper::weighPending()
         for (LoopClosure& loop : loops_)
         {
             if (loop.verdict != Verdict::Pending) continue;
+            if (isApart() && !isOwn(loop.from)) continue;
             const std::optional<Matrix6d> covariance = covarianceOf(loop.from, loop.to);
             if (!covariance) continue;
             const Vector6d gap = rightErrorTo(between(loop.from, loop.to), loop.T_from_to);
@@ -230,6 +329,70 @@ void Mapper::weighPending()
             changed = true;
         }
     }
+}
+
+std::vector<Mapper::Joints> Mapper::agreeingJoints() const
+{
+    std::vector<Joints> groups;
+    for (std::size_t i = 0; i < loops_.size(); i++)
+    {
+        const LoopClosure& loop = loops_[i];
+        if (loop.verdict != Verdict::Pending || isOwn(loop.from)) continue;
+        const Pose T = poseOf(loop.from) * loop.T_from_to * poseOf(loop.to).inverse();
+        const auto says_the_same = [&](const Joints& g)
+        {
+            // Where the submap stands by the one and by the other.
+            const Pose a = g.T_map_run * poseOf(loop.to), b = T * poseOf(loop.to);
+            return (a.p - b.p).norm() < kJointApart &&
+                   logSO3(a.R.transpose() * b.R).norm() < kJointTurned;
+        };
+        auto group = std::find_if(groups.begin(), groups.end(), says_the_same);
+        if (group == groups.end()) group = groups.insert(groups.end(), {T, {}, 0});
+        group->loops.push_back(i);
+        group->evidence += std::exp(-loop.evidence.conflicts / kTellingConflicts);
+    }
+    std::stable_sort(
+        groups.begin(), groups.end(),
+        [](const Joints& a, const Joints& b) { return a.evidence > b.evidence; });
+    return groups;
+}
+
+void Mapper::weighJoints(bool at_the_end)
+{
+    const std::vector<Joints> groups = agreeingJoints();
+    if (groups.empty()) return;
+    const double second = groups.size() > 1 ? groups[1].evidence : 0;
+    std::set<VertexId> submaps;
+    for (const std::size_t i : groups[0].loops) submaps.insert(loops_[i].to);
+    const bool clearly_best = groups[0].evidence >= kClearly * second;
+    const bool alone = at_the_end && groups.size() == 1;
+    if ((submaps.size() >= 2 && clearly_best) || alone) join(groups[0]);
+}
+
+void Mapper::join(const Joints& joints)
+{
+    for (std::size_t i = first_own_; i < graph_.vertices.size(); i++)
+    {
+        GraphVertex& vertex = graph_.vertices[i];
+        vertex.T_world_submap = joints.T_map_run * vertex.T_world_submap;
+        vertex.fixed = false;
+    }
+    joined_ = true;
+    covariance_.reset();
+    for (const std::size_t i : joints.loops)
+        accept(loops_[i], format("%zu places of the map agree", joints.loops.size()));
+}
+
+PoseGraph Mapper::resultGraph() const
+{
+    if (!known_ || known_->extend) return graph_;
+    PoseGraph own;
+    own.vertices.assign(
+        graph_.vertices.begin() + static_cast<std::ptrdiff_t>(first_own_), graph_.vertices.end());
+    for (const RelativeEdge& edge : graph_.relative_edges)
+        if (isOwn(edge.from) && isOwn(edge.to)) own.relative_edges.push_back(edge);
+    own.gravity_edges = graph_.gravity_edges;
+    return own;
 }
 
 void Mapper::accept(LoopClosure& loop, const std::string& reason)
@@ -277,7 +440,7 @@ PoseGraph Mapper::odometryAlone() const
 {
     PoseGraph alone = graph_;
     for (RelativeEdge& edge : alone.relative_edges) edge.enabled = edge.kind == EdgeKind::Odometry;
-    for (std::size_t i = 1; i < alone.vertices.size(); i++)
+    for (std::size_t i = first_own_ + 1; i < alone.vertices.size(); i++)
     {
         const auto before = store_.at(alone.vertices[i - 1].id);
         alone.vertices[i].T_world_submap = alone.vertices[i - 1].T_world_submap *
@@ -286,35 +449,59 @@ PoseGraph Mapper::odometryAlone() const
     return alone;
 }
 
-void Mapper::learnDrift()
+std::vector<ClosedGap> Mapper::gapsOf(const PoseGraph& odometry) const
 {
-    const PoseGraph alone = odometryAlone();
     std::vector<ClosedGap> gaps;
     std::shared_ptr<const GraphCovariance> covariance;
+    const auto at = [&](VertexId id) -> const Pose&
+    { return odometry.vertices[static_cast<std::size_t>(odometry.indexOf(id))].T_world_submap; };
     for (const LoopClosure& loop : loops_)
     {
-        if (loop.verdict != Verdict::Accepted) continue;
-        if (!covariance) covariance = optimizer_->covariance(alone, {});
-        const Pose T_from_to =
-            alone.vertices[static_cast<std::size_t>(alone.indexOf(loop.from))]
-                .T_world_submap.inverse() *
-            alone.vertices[static_cast<std::size_t>(alone.indexOf(loop.to))].T_world_submap;
+        if (loop.verdict != Verdict::Accepted || !isOwn(loop.from)) continue;
+        if (!covariance) covariance = optimizer_->covariance(odometry, {});
         gaps.push_back(
-            {rightErrorTo(T_from_to, loop.T_from_to),
+            {rightErrorTo(at(loop.from).inverse() * at(loop.to), loop.T_from_to),
              covariance->relative(loop.from, loop.to) / drift_scale_, loop.information});
     }
+    return gaps;
+}
+
+void Mapper::learnDrift()
+{
+    const std::vector<ClosedGap> gaps = gapsOf(odometryAlone());
     if (gaps.empty()) return;
     const double scale = driftScale(gaps);
     for (RelativeEdge& edge : graph_.relative_edges)
-        if (edge.kind == EdgeKind::Odometry) edge.information *= drift_scale_ / scale;
+        if (edge.kind == EdgeKind::Odometry && isOwn(edge.from))
+            edge.information *= drift_scale_ / scale;
     drift_scale_ = scale;
     weights_ = optimizer_->optimize(graph_).weights;
     covariance_.reset();
 }
 
+void Mapper::weighGaps()
+{
+    const PoseGraph odometry = odometryAlone();
+    double chi2 = 0;
+    int directions = 0;
+    for (const ClosedGap& gap : gapsOf(odometry))
+    {
+        const GapTest test = testGap(gap.gap, Matrix6d::Zero(), gap.information);
+        chi2 += test.chi2;
+        directions += test.directions;
+    }
+    gaps_count_ = directions > 0 && chi2 > chiSquareBeyond(kGapsByChance, directions);
+    if (moved()) return;
+    for (std::size_t i = 0; i < graph_.vertices.size(); i++)
+        graph_.vertices[i].T_world_submap = odometry.vertices[i].T_world_submap;
+    for (LoopClosure& loop : loops_)
+        if (loop.verdict == Verdict::Accepted)
+            loop.reason = "the odometry is already as near as the loop can tell: nothing moves";
+}
+
 void Mapper::forPath(const std::function<void(Time, const Pose&)>& visit) const
 {
-    for (std::size_t i = 0; i < graph_.vertices.size(); i++)
+    for (std::size_t i = first_own_; i < graph_.vertices.size(); i++)
     {
         const GraphVertex& vertex = graph_.vertices[i];
         const auto submap = store_.at(vertex.id);
@@ -331,7 +518,7 @@ void Mapper::forPath(const std::function<void(Time, const Pose&)>& visit) const
             poses = correctedPoses(*submap, vertex.T_world_submap);
         }
         // The first state is the last of the submap before.
-        for (std::size_t k = i == 0 ? 0 : 1; k < poses.size(); k++)
+        for (std::size_t k = i == first_own_ ? 0 : 1; k < poses.size(); k++)
             visit(submap->scans[k].t, poses[k]);
     }
 }
@@ -347,10 +534,10 @@ std::vector<std::pair<Vector3d, Vector3d>> Mapper::joinedPlaces() const
 
 void Mapper::writeClouds() const
 {
-    for (const GraphVertex& vertex : graph_.vertices)
+    for (const GraphVertex& vertex : resultGraph().vertices)
     {
-        const std::string name = store_.fileOf(vertex.id);
-        PlyPointWriter file(name.substr(0, name.size() - 4) + ".ply");
+        const std::string name = fs::path(store_.fileOf(vertex.id)).stem().string();
+        PlyPointWriter file(folder_ + "/" + name + ".ply");
         for (const SubmapPoint& p : store_.at(vertex.id)->points)
         {
             const Vector3d in_world = vertex.T_world_submap * Vector3d(p.position.cast<double>());

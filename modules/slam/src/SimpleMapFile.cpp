@@ -48,9 +48,10 @@ mrpt::obs::CSensoryFrame viewOf(const Submap& submap, std::size_t most)
 void writeSimpleMap(const std::string& path, const Mapper& mapper)
 {
     mrpt::maps::CSimpleMap map;
-    const std::size_t submaps = std::max<std::size_t>(1, mapper.graph().vertices.size());
+    const std::size_t submaps = std::max<std::size_t>(1, mapper.resultGraph().vertices.size());
     const std::size_t most = std::min(kMostPoints, kMostOfAll / submaps);
-    for (const GraphVertex& vertex : mapper.graph().vertices)
+    const PoseGraph graph = mapper.resultGraph();
+    for (const GraphVertex& vertex : graph.vertices)
     {
         mrpt::poses::CPose3DPDFGaussian pose;
         pose.mean = toMrpt(vertex.T_world_submap);

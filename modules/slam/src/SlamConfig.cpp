@@ -10,6 +10,8 @@ SlamConfig SlamConfig::read(ConfigSection& s, const Prototype<Map>& map)
     c.judge.declare(s.section("closure"));
     c.places = Prototype<PlaceRecognizer>(
         createConfigured<PlaceRecognizer>(s.section("places"), "taut::NearbyPlaces"));
+    c.appearance = Prototype<PlaceRecognizer>(
+        createConfigured<PlaceRecognizer>(s.section("appearance"), "taut::PlacesByView"));
     c.optimizer = Prototype<GraphOptimizer>(
         createConfigured<GraphOptimizer>(s.section("graph"), "taut::SparseGraphOptimizer"));
     c.map = map;

@@ -16,12 +16,16 @@ SubmapStore::SubmapStore(std::string folder, std::size_t in_memory)
 
 std::string SubmapStore::fileOf(VertexId id) const
 {
-    return folder_ + format("/%05lld.tsm", static_cast<long long>(id));
+    const std::string name = format("/%05lld.tsm", static_cast<long long>(id));
+    if (!other_folder_.empty() && !std::filesystem::exists(folder_ + name) &&
+        std::filesystem::exists(other_folder_ + name))
+        return other_folder_ + name;
+    return folder_ + name;
 }
 
 void SubmapStore::add(Submap submap)
 {
-    writeSubmap(fileOf(submap.id), submap);
+    writeSubmap(folder_ + format("/%05lld.tsm", static_cast<long long>(submap.id)), submap);
     remember(std::make_shared<const Submap>(std::move(submap)));
 }
 

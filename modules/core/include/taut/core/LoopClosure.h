@@ -13,7 +13,8 @@ struct LoopCandidate
     Pose T_from_to;  //!< a guess
     /** Of the guess, in the tangent of RelativeEdge [m, rad]. */
     Matrix6d covariance = Matrix6d::Identity();
-    std::string source;  //!< who found it: "estimate", "appearance"
+    std::string source;               //!< who found it: "estimate", "appearance"
+    bool between_recordings = false;  //!< things may have moved since
 };
 
 enum class Verdict

@@ -11,13 +11,14 @@ namespace taut
 {
 struct LoopJudgeConfig
 {
-    int points = 2500;               //!< of each submap that are registered
-    double min_overlap = 0.3;        //!< of what both could see
-    double min_inliers = 0.6;        //!< of these on a surface
-    double max_conflicts = 0.005;    //!< of the common cells, where the other saw free space
-    int min_cells = 150;             //!< that both could see
-    int min_sectors = 3;             //!< of eight around, that hold inliers
-    double max_disagreement = 0.05;  //!< [m] between registrations from either side and start
+    int points = 2500;                    //!< of each submap that are registered
+    double min_overlap = 0.3;             //!< of what both could see
+    double min_inliers = 0.6;             //!< of these on a surface
+    double max_conflicts = 0.005;         //!< of the common cells, where the other saw free space
+    double max_conflicts_between = 0.04;  //!< the same between recordings: furniture moves
+    int min_cells = 150;                  //!< that both could see
+    int min_sectors = 3;                  //!< of eight around, that hold inliers
+    double max_disagreement = 0.05;       //!< [m] between registrations from either side and start
     double max_angle_disagreement = 0.005;  //!< [rad]
     int min_directions = 4;                 //!< of six that the overlap shows
     // Of a loop, besides what its residuals say: what both submaps have in common is wrong in both.

@@ -36,6 +36,7 @@ class Metrics
         bool with_slam = false;     //!< loops were looked for
         std::size_t submaps = 0, loops_judged = 0, loops_accepted = 0, loops_pending = 0,
                     loops_withdrawn = 0;
+        bool path_corrected = false;
         double drift_scale = 1;          //!< Mapper::scaleOfDrift()
         double slam_seconds = 0;         //!< of wall_seconds: on loops and the graph
         double second_pass_seconds = 0;  //!< of wall_seconds

@@ -22,6 +22,7 @@ struct SessionConfig
     std::string input;        //!< file of the measurements: named and hashed in metrics.json
     std::string method_file;  //!< named in metrics.json
     std::string rig;          //!< text of the rig file; empty: there is none
+    std::optional<KnownMap> known_map;  //!< that the run is joined to; loops have to be on
     int threads = 1;
     bool pictures = true;
 };
@@ -34,7 +35,8 @@ struct SessionOutcome
     double duration = 0;                               //!< [s] of the recording
     double wall_seconds = 0, milliseconds_a_scan = 0;  //!< of the estimation
     std::size_t map_points = 0;
-    std::size_t submaps = 0, loops = 0;  //!< loops: that were closed
+    std::size_t submaps = 0, loops = 0;  //!< loops: that are believed
+    bool corrected = false;              //!< the path is not the odometry's any more
     bool undistorted_again = false;      //!< every point, along the path that the loops corrected
     bool pictures_failed = false;
     bool interrupted = false;

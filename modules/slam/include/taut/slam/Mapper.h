@@ -10,11 +10,21 @@
 #include "taut/core/LoopClosure.h"
 #include "taut/core/Parallel.h"
 #include "taut/core/Warning.h"
+#include "taut/slam/DriftScale.h"
 #include "taut/slam/SlamConfig.h"
 #include "taut/submaps/SubmapStore.h"
 
 namespace taut
 {
+/** The map of an earlier run that a run is joined to. */
+struct KnownMap
+{
+    std::string folder;   //!< of that run's results
+    bool extend = false;  //!< its submaps may move and belong to the result; else they stay
+    std::optional<Pose> T_map_start;  //!< of the first state: position and heading, to a
+                                      //!< metre and ten degrees
+};
+
 /** From the odometry's path to one consistent map: cuts it into submaps, finds loops, judges them,
  * and keeps the pose graph. Not thread-safe. */
 class Mapper
@@ -22,6 +32,14 @@ class Mapper
  public:
     /** Submaps are written to `folder`. Warnings: `loop_withdrawn`. */
     Mapper(const SlamConfig& config, std::string folder, Executor& executor, WarningSink warn);
+
+    /** Before the path begins: joins the run to a known map as soon as a place of it is recognised.
+     * The graph is told in the frame of that map from then on. Throws std::runtime_error that names
+     * what cannot be used. */
+    void use(const KnownMap& map);
+
+    /** True if a known map was given and no place of it was recognised. */
+    bool isApart() const { return known_ && !joined_; }
 
     /** The path begins at this state. */
     void start(const NavEstimate& first) { builder_.start(first); }
@@ -41,10 +59,16 @@ class Mapper
      * nothing new is found. */
     void finish();
 
-    /** True if a loop is believed: the path is not the odometry's any more. */
-    bool moved() const { return accepted_ > 0; }
+    /** After finish(): true if the path is not the odometry's any more. It stays so where all loops
+     * that are believed say no more than that they cannot tell it from theirs: a body that never
+     * left its map has no gaps, and the odometry measures better than two submaps do. */
+    bool moved() const { return joined_ || gaps_count_; }
 
     const PoseGraph& graph() const { return graph_; }
+    /** The part of the graph that belongs to the results: without a known map that only serves. */
+    PoseGraph resultGraph() const;
+    /** Submaps of this run. */
+    std::size_t submaps() const { return graph_.vertices.size() - first_own_; }
     /** Everything that was judged, in that order. */
     const std::vector<LoopClosure>& loops() const { return loops_; }
     std::size_t accepted() const { return accepted_; }
@@ -72,9 +96,23 @@ class Mapper
     void searchFor(VertexId id);
     void judge(const LoopCandidate& candidate);
     void weighPending();
+    std::vector<ClosedGap> gapsOf(const PoseGraph& odometry) const;
     void learnDrift();
+    void weighGaps();
+    void weighJoints(bool at_the_end);
+    /** Loops into the known map that say the same of where the run is in it. */
+    struct Joints
+    {
+        Pose T_map_run;                  //!< by the first of them
+        std::vector<std::size_t> loops;  //!< positions in loops_
+        double evidence = 0;             //!< each counts 1, less for what it sees through
+    };
+    std::vector<Joints> agreeingJoints() const;
+    void join(const Joints& joints);
+    void judgeStart(VertexId id);
+    bool isOwn(VertexId id) const { return id >= first_own_id_; }
     PoseGraph odometryAlone() const;
-    bool agrees(const LoopClosure& a, const LoopClosure& b) const;
+    bool agrees(const LoopClosure& a, const LoopClosure& b);
     void accept(LoopClosure& loop, const std::string& reason);
     std::optional<Matrix6d> covarianceOf(VertexId from, VertexId to);
     Pose between(VertexId from, VertexId to) const;
@@ -85,7 +123,12 @@ class Mapper
     Executor& executor_;
     WarningSink warn_;
     SubmapStore store_;
-    std::unique_ptr<PlaceRecognizer> places_;
+    std::string folder_;
+    std::optional<KnownMap> known_;
+    bool joined_ = false;
+    std::size_t first_own_ = 0;  // position of this run's first vertex
+    VertexId first_own_id_ = 0;
+    std::unique_ptr<PlaceRecognizer> places_, appearance_;
     std::unique_ptr<GraphOptimizer> optimizer_;
     LoopJudge judge_;
     SubmapBuilder builder_;
@@ -96,6 +139,7 @@ class Mapper
     std::set<std::pair<VertexId, VertexId>> judged_;
     std::list<std::pair<VertexId, std::shared_ptr<const Map>>> maps_;  // the last used one first
     std::size_t accepted_ = 0;
+    bool gaps_count_ = false;  // together they are more than the loops can err
     double drift_scale_ = 1;
     double seconds_ = 0;
 };

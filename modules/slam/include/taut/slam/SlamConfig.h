@@ -15,7 +15,8 @@ struct SlamConfig
     bool loops = true;  //!< close loops; else the odometry's path is the result
     SubmapConfig submap;
     LoopJudgeConfig judge;
-    Prototype<PlaceRecognizer> places;
+    Prototype<PlaceRecognizer> places;      //!< near by the estimate
+    Prototype<PlaceRecognizer> appearance;  //!< where the estimate does not tell
     Prototype<GraphOptimizer> optimizer;
     Prototype<Map> map;  //!< of a submap; that of the odometry
 

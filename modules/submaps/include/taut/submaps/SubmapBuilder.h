@@ -43,6 +43,14 @@ class SubmapBuilder
     /** `done` gets every submap when it ends, in their order. */
     SubmapBuilder(const SubmapConfig& config, std::function<void(Submap)> done);
 
+    /** For a recording that goes on from others: the id of its first submap, and the way [m] that
+     * it begins at. */
+    void goOnFrom(VertexId first_id, double path)
+    {
+        next_id_ = first_id;
+        path_ = path;
+    }
+
     /** The first state, or a new beginning. */
     void start(const NavEstimate& first);
 

@@ -16,6 +16,9 @@ class SubmapStore
     /** `folder` is made if it is not there. At most `in_memory` submaps are held. */
     explicit SubmapStore(std::string folder, std::size_t in_memory = 24);
 
+    /** Submaps that are not in this folder are read from there. */
+    void readAlsoFrom(std::string folder) { other_folder_ = std::move(folder); }
+
     /** Throws what writeSubmap() throws. */
     void add(Submap submap);
 
@@ -28,7 +31,7 @@ class SubmapStore
  private:
     void remember(std::shared_ptr<const Submap> submap) const;
 
-    std::string folder_;
+    std::string folder_, other_folder_;
     std::size_t in_memory_;
     mutable std::list<std::shared_ptr<const Submap>> recent_;  // the last used one first
 };
