@@ -34,10 +34,19 @@ void declare(ConfigSection& section, WorldConfig& config)
          {"stairwell", WorldType::Stairwell},
          {"street", WorldType::Street},
          {"forest", WorldType::Forest},
+         {"storeys", WorldType::Storeys},
+         {"halls", WorldType::Halls},
+         {"blocks", WorldType::Blocks},
+         {"tunnel", WorldType::Tunnel},
+         {"field", WorldType::Field},
          {"mesh", WorldType::MeshFile}},
         "kind of world");
     section.key("seed", config.seed, {0, 1e9}, "of what is placed at random");
     section.key("moving", config.moving, {0, 100}, "number of people or cars that move");
+    if (config.type == WorldType::Halls)
+        section.key("distinct", config.distinct, {0, 6}, "objects in each hall, not in the others");
+    if (config.type == WorldType::Tunnel)
+        section.key("refuges", config.refuges, "recesses 0.4 m deep every 50 m in both walls");
     if (config.type != WorldType::MeshFile) return;
     section.key("file", config.file, "PLY or OBJ, metres, z up");
     section.key("route", config.route, "corners 'x y z, x y z, ...' of a closed way [m]");
@@ -60,6 +69,16 @@ World makeWorld(const WorldConfig& config)
             return makeStreet(random);
         case WorldType::Forest:
             return makeForest(random);
+        case WorldType::Storeys:
+            return makeStoreys(random);
+        case WorldType::Halls:
+            return makeHalls(config, random);
+        case WorldType::Blocks:
+            return makeBlocks(random);
+        case WorldType::Tunnel:
+            return makeTunnel(config, random);
+        case WorldType::Field:
+            return makeField(random);
         case WorldType::MeshFile:
             break;
     }

@@ -10,4 +10,9 @@ World makeCorridor(Random& random);
 World makeStairwell(Random& random);
 World makeStreet(Random& random);
 World makeForest(Random& random);
+World makeStoreys(Random& random);
+World makeHalls(const WorldConfig& config, Random& random);
+World makeBlocks(Random& random);
+World makeTunnel(const WorldConfig& config, Random& random);
+World makeField(Random& random);
 }  // namespace taut::simulation
