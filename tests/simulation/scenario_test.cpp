@@ -64,6 +64,10 @@ TEST(Scenario, UnknownKeysAreNamed)
 {
     EXPECT_THAT(messageOf({"imu.rat=100"}), HasSubstr("'imu.rat'"));
     EXPECT_THAT(messageOf({"lidar.mount.zz=1"}), HasSubstr("'lidar.mount.zz'"));
+    EXPECT_THAT(messageOf({"world.type=field", "world.moved=0.3"}), HasSubstr("'world.moved'"));
+    EXPECT_THAT(messageOf({"world.type=halls", "world.distinct=7"}), HasSubstr("'world.distinct'"));
+    EXPECT_THAT(messageOf({"world.type=halls", "world.moved=2"}), HasSubstr("'world.moved'"));
+    EXPECT_THAT(messageOf({"world.type=blocks", "world.glass=1"}), HasSubstr("'world.glass'"));
     EXPECT_THAT(messageOf({"motion.type=dance"}), HasSubstr("'motion.type'"));
     EXPECT_THAT(messageOf({"imu.rate=fast"}), HasSubstr("'imu.rate'"));
     EXPECT_THAT(messageOf({"imu.rate"}), HasSubstr("key=value"));

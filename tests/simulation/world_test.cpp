@@ -175,6 +175,23 @@ TEST(RayCaster, FindsTheNearestSurfaceExactly)
     EXPECT_TRUE(std::isinf(caster.clearance({6, 2, 2}, 0.5)));
 }
 
+namespace
+{
+/** Indices of the triangles of a that have other corners in b. */
+std::vector<std::size_t> movedTriangles(const Mesh& a, const Mesh& b)
+{
+    std::vector<std::size_t> moved;
+    for (std::size_t i = 0; i < a.triangles.size(); i++)
+        for (int k = 0; k < 3; k++)
+            if (a.vertices[a.triangles[i][k]] != b.vertices[b.triangles[i][k]])
+            {
+                moved.push_back(i);
+                break;
+            }
+    return moved;
+}
+}  // namespace
+
 TEST(World, EveryWorldHasAWayThatKeepsClear)
 {
     for (const WorldType type :
@@ -187,6 +204,8 @@ TEST(World, EveryWorldHasAWayThatKeepsClear)
             WorldConfig config;
             config.type = type;
             config.seed = seed;
+            config.moved = seed - 1;
+            config.distinct = 3;
             const World world = makeWorld(config);
             const RayCaster caster(world.mesh);
             const RoutePath path(world.route, {});
@@ -326,6 +345,68 @@ TEST(World, TheFieldIsEmptyUpToItsRim)
     }
     EXPECT_GT(repeatedLength(path, 1), 50);
     EXPECT_GT(path.length(), 2 * 150);
+}
+
+TEST(World, AShareOfThingsStandsElsewhereInAnotherSession)
+{
+    for (const WorldType type :
+         {WorldType::Hall, WorldType::Street, WorldType::Halls, WorldType::Blocks})
+    {
+        SCOPED_TRACE(static_cast<int>(type));
+        const auto meshOf = [type](double moved, int moved_seed)
+        {
+            WorldConfig config = worldOf(type);
+            config.moved = moved;
+            config.moved_seed = moved_seed;
+            return makeWorld(config).mesh;
+        };
+        const Mesh before = meshOf(0, 1), later = meshOf(0.4, 1), other = meshOf(0.4, 2);
+        EXPECT_EQ(before.vertices, meshOf(0, 2).vertices);
+        EXPECT_EQ(later.vertices, meshOf(0.4, 1).vertices);
+        EXPECT_NE(later.vertices, other.vertices);
+        // The same things, and all that has not moved is the same to the bit.
+        EXPECT_EQ(before.triangles, later.triangles);
+        EXPECT_EQ(before.reflectivity, later.reflectivity);
+        const auto all = movedTriangles(before, meshOf(1, 1)), some = movedTriangles(before, later);
+        EXPECT_TRUE(std::includes(all.begin(), all.end(), some.begin(), some.end()));
+        EXPECT_LT(all.size(), before.triangles.size() * 2 / 3);
+        const double share = static_cast<double>(some.size()) / static_cast<double>(all.size());
+        EXPECT_NEAR(share, 0.4, type == WorldType::Blocks ? 0.02 : 0.12);
+        for (const std::size_t i : some)  // elsewhere, and not merely a little aside
+        {
+            const Vector3d from = before.vertices[before.triangles[i][0]];
+            EXPECT_GT((later.vertices[later.triangles[i][0]] - from).norm(), 0.3);
+        }
+    }
+}
+
+TEST(World, NothingReturnsFromWindowsOfGlass)
+{
+    // The share of rays through the windows of a wall that find nothing.
+    const auto lost = [](WorldType type, double glass)
+    {
+        WorldConfig config = worldOf(type);
+        config.glass = glass;
+        const RayCaster caster(makeWorld(config).mesh);
+        const bool halls = type == WorldType::Halls;
+        double rays = 0, nothing = 0;
+        for (double s = 1; s < (halls ? 48 : 19); s += 0.05)
+        {
+            const Vector3d origin = halls ? Vector3d(s, 5, 2.4) : Vector3d(30, s, 1.5);
+            const Vector3d direction = halls ? Vector3d::UnitY() : Vector3d::UnitX();
+            if (halls && std::fmod(s, 12.3) > 12) continue;  // between two halls
+            rays++;
+            nothing += !caster.cast(origin, direction, 200);
+        }
+        return nothing / rays;
+    };
+    for (const WorldType type : {WorldType::Storeys, WorldType::Halls})
+    {
+        EXPECT_EQ(lost(type, 0), 0);
+        const double all = lost(type, 1);
+        EXPECT_GT(all, 0.4);
+        EXPECT_NEAR(lost(type, 0.5), all / 2, 0.1);
+    }
 }
 
 TEST(Route, KeepsItsSpeedLimitsAndJoinsItsEnds)

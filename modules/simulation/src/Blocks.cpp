@@ -26,12 +26,13 @@ Vector3d crossing(int i, int j)
 
 void addRectangle(
     Mesh& mesh, const Vector3d& min, const Vector3d& max,
-    StreetSide (*side)(const Vector3d&, const Vector3d&, const Terrain&), Random& random)
+    StreetSide (*side)(const Vector3d&, const Vector3d&, const Terrain&), Movables& cars,
+    Random& random)
 {
     const std::array<Vector3d, 4> corners{
         min, Vector3d(max.x(), min.y(), 0), max, Vector3d(min.x(), max.y(), 0)};
     for (std::size_t i = 0; i < 4; i++)
-        addStreetSide(mesh, side(corners[i], corners[(i + 1) % 4], height), random);
+        addStreetSide(mesh, side(corners[i], corners[(i + 1) % 4], height), cars, random);
 }
 
 /** From crossing to crossing. Two streets are driven twice in the same direction, one in both. */
@@ -86,16 +87,19 @@ Route makeRoute()
 }
 }  // namespace
 
-World makeBlocks(Random& random)
+World makeBlocks(const WorldConfig& config, Random& random)
 {
     World world;
     const Vector3d far = crossing(kBlocks, kBlocks);
     addGround(
         world.mesh, -kMargin, -kMargin, far.x() + kMargin, far.y() + kMargin, 4, height, 0.25F);
-    addRectangle(world.mesh, crossing(0, 0), far, outerSide, random);
+    Movables cars;
+    addRectangle(world.mesh, crossing(0, 0), far, outerSide, cars, random);
     for (int i = 0; i < kBlocks; i++)
         for (int j = 0; j < kBlocks; j++)
-            addRectangle(world.mesh, crossing(i, j), crossing(i + 1, j + 1), innerSide, random);
+            addRectangle(
+                world.mesh, crossing(i, j), crossing(i + 1, j + 1), innerSide, cars, random);
+    cars.addTo(world.mesh, config);
     world.route = makeRoute();
     world.traffic = {true, 9, 14, 0};  // what comes along a street may be the body itself, later
     return world;

@@ -1,4 +1,5 @@
 #include "Furniture.h"
+#include "Movables.h"
 #include "Walls.h"
 #include "Worlds.h"
 
@@ -37,15 +38,16 @@ std::vector<Pose> makePlaces()
     return places;
 }
 
-std::vector<Recess> windows()
+std::vector<Recess> makeWindows(const WorldConfig& config)
 {
     std::vector<Recess> recesses;
-    for (double x = 1; x < kLength - 2; x += 2.75)
-        recesses.push_back({x, x + 1.8, 1.2, 3.4, 0.15, 0.1F});
+    for (double x = 0.6; x < kLength - 1; x += 1.9)
+        recesses.push_back({x, x + 1.3, 1.2, 3.4, 0.15, 0.1F});
+    glaze(recesses, config);
     return recesses;
 }
 
-void addHall(Mesh& mesh)
+void addHall(Mesh& mesh, const WorldConfig& config)
 {
     const double back = kWall + kDepth;
     for (const double z : {0.0, kHeight})
@@ -54,7 +56,7 @@ void addHall(Mesh& mesh)
     { return makeDoorway(kLength - x, kDoorway, kDoorHeight, kWall / 2); };
     const Vector3d a(0, kWall, 0), b(0, back, 0), c(kLength, back, 0), d(kLength, kWall, 0);
     addWallAlong(mesh, a, b, kHeight, {}, 0.6F);
-    addWallAlong(mesh, b, c, kHeight, windows(), 0.6F);
+    addWallAlong(mesh, b, c, kHeight, makeWindows(config), 0.6F);
     addWallAlong(mesh, c, d, kHeight, {}, 0.6F);
     addWallAlong(mesh, d, a, kHeight, {doorway(kOut), doorway(kIn)}, 0.6F);
     for (const double x : {kLength / 3, 2 * kLength / 3})  // girders
@@ -75,6 +77,11 @@ void addCorridor(Mesh& mesh, Random& random)
     addWallAlong(
         mesh, {end, -kCorridor, 0}, {begin, -kCorridor, 0}, kCorridorHeight,
         makeDoors(kPitch, random), 0.65F);
+}
+
+Movables::Thing makeThing(Random& random)
+{
+    return [thing = makeFurniture(random)](Mesh& mesh, const Pose& T) { mesh.append(thing, T); };
 }
 
 /** Through every hall in turn, in by one doorway and out by the other, and back by the corridor. */
@@ -106,24 +113,29 @@ World makeHalls(const WorldConfig& config, Random& random)
 {
     World world;
     Mesh section;  // a hall and what there is of the corridor before it
-    addHall(section);
+    addHall(section, config);
     addCorridor(section, random);
     std::vector<Pose> places = makePlaces();
     shuffle(places, random);
-    const auto free = places.begin() + kFurniture;
-    for (auto place = places.begin(); place != free; ++place)
-        section.append(makeFurniture(random), *place);
+    std::vector<Movables::Thing> alike;
+    for (std::size_t i = 0; i < kFurniture; i++) alike.push_back(makeThing(random));
 
+    Movables furniture;
     for (int hall = 0; hall < kHalls; hall++)
     {
         const Pose T_world_hall{Matrix3d::Identity(), {hall * kPitch, 0, 0}};
         world.mesh.append(section, T_world_hall);
-        std::vector<Pose> own(free, places.end());
-        shuffle(own, random);
-        own.resize(static_cast<std::size_t>(config.distinct));
-        for (const Pose& place : own)
-            world.mesh.append(makeFurniture(random), T_world_hall * place);
+        for (std::size_t i = 0; i < kFurniture; i++)
+            furniture.add(alike[i], T_world_hall * places[i]);
+        std::vector<Pose> others(places.begin() + kFurniture, places.end());
+        shuffle(others, random);
+        for (std::size_t i = 0; i < others.size(); i++)
+            if (i < static_cast<std::size_t>(config.distinct))
+                furniture.add(makeThing(random), T_world_hall * others[i]);
+            else
+                furniture.addFreePlace(T_world_hall * others[i]);
     }
+    furniture.addTo(world.mesh, config);
     for (const double x : {-kWall / 2, kHalls * kPitch - kWall / 2})  // ends of the corridor
         addQuad(
             world.mesh, {x, -kCorridor, 0}, {x, 0, 0}, {x, 0, kCorridorHeight},

@@ -34,16 +34,17 @@ std::vector<Recess> besidesDoorway(std::vector<Recess> doors)
     return recesses;
 }
 
-std::vector<Recess> windows(double length)
+std::vector<Recess> makeWindows(double length, const WorldConfig& config, int wall)
 {
     std::vector<Recess> recesses;
     for (double x = 2; x + 1.4 < length - 1; x += 3)
         recesses.push_back({x, x + 1.4, 0.9, 2.1, 0.06, 0.1F});
+    glaze(recesses, config, wall);
     return recesses;
 }
 
 /** Floor and walls of one storey, at z = 0: both are made of it. */
-Mesh makeStorey(Random& random)
+Mesh makeStorey(const WorldConfig& config, Random& random)
 {
     Mesh mesh;
     const auto inner = corners(-kHalf), outer = corners(kHalf);
@@ -60,7 +61,8 @@ Mesh makeStorey(Random& random)
         addWallAlong(
             mesh, inner[i], inner[next], kHeight, i == 0 ? besidesDoorway(doors) : doors, 0.65F);
         const double outside = (outer[next] - outer[i]).norm();
-        const auto recesses = is_short ? windows(outside) : makeDoors(outside, random);
+        const auto recesses = is_short ? makeWindows(outside, config, static_cast<int>(i))
+                                       : makeDoors(outside, random);
         addWallAlong(mesh, outer[next], outer[i], kHeight, recesses, 0.65F);
 
         const Vector3d leg = corners(0)[next] - corners(0)[i];
@@ -157,10 +159,10 @@ Route makeRoute()
 }
 }  // namespace
 
-World makeStoreys(Random& random)
+World makeStoreys(const WorldConfig& config, Random& random)
 {
     World world;
-    const Mesh storey = makeStorey(random);
+    const Mesh storey = makeStorey(config, random);
     world.mesh.append(storey);
     world.mesh.append(storey, {Matrix3d::Identity(), {0, 0, stairs::kStorey}});
     world.mesh.append(makeStaircase(), stairsPose());

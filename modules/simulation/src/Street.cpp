@@ -33,12 +33,14 @@ std::vector<StreetSide> sides()
 }
 }  // namespace
 
-World makeStreet(Random& random)
+World makeStreet(const WorldConfig& config, Random& random)
 {
     World world;
     Mesh& mesh = world.mesh;
     addGround(mesh, -kMargin, -kMargin, kBlockX + kMargin, kBlockY + kMargin, 4, height, 0.25F);
-    for (const StreetSide& side : sides()) addStreetSide(mesh, side, random);
+    Movables cars;
+    for (const StreetSide& side : sides()) addStreetSide(mesh, side, cars, random);
+    cars.addTo(mesh, config);
 
     // Counter-clockwise in the right lane.
     const std::array<std::array<double, 2>, 4> corners{

@@ -67,14 +67,23 @@ void addSidewalk(Mesh& mesh, const StreetSide& side)
     }
 }
 
-void addFurniture(Mesh& mesh, const StreetSide& side, Random& random)
+void parkCars(Movables& cars, const StreetSide& side, Random& random)
 {
-    for (double s = 14; s < side.length - 16; s += random.uniform(5.4, 14.0))
+    for (double s = 14; s < side.length - 16;)
     {
         Pose T = side.frame(s, kParking + random.uniform(-0.15, 0.15));
         T.R = T.R * expSO3(Vector3d(0, 0, random.uniform(-0.03, 0.03)));
-        addCar(mesh, T, static_cast<float>(random.uniform(0.1, 0.8)), random.uniform(0.9, 1.15));
+        const double scale = random.uniform(0.9, 1.15);
+        const auto shade = static_cast<float>(random.uniform(0.1, 0.8));
+        cars.add([=](Mesh& mesh, const Pose& place) { addCar(mesh, place, shade, scale); }, T);
+        const double gap = random.uniform(5.4, 14.0);
+        if (gap > 11) cars.addFreePlace(side.frame(s + gap / 2, kParking));
+        s += gap;
     }
+}
+
+void addFurniture(Mesh& mesh, const StreetSide& side, Random& random)
+{
     for (double s = 18; s < side.length - 14; s += random.uniform(22.0, 30.0))
     {
         const Vector3d foot = side.at(s, kKerb + 0.5), top = foot + Vector3d(0, 0, 6.5);
@@ -121,7 +130,7 @@ StreetSide innerSide(const Vector3d& from, const Vector3d& to, const Terrain& he
     return {from + kFacade * along, along, left, d.norm() - 2 * kFacade, height};
 }
 
-void addStreetSide(Mesh& mesh, const StreetSide& side, Random& random)
+void addStreetSide(Mesh& mesh, const StreetSide& side, Movables& cars, Random& random)
 {
     addSidewalk(mesh, side);
     for (double s = 0; s < side.length - 8;)
@@ -130,6 +139,7 @@ void addStreetSide(Mesh& mesh, const StreetSide& side, Random& random)
         if (random.uniform() > 0.08) addBuilding(mesh, side, s, width, random);
         s += width + (random.uniform() < 0.2 ? random.uniform(2.0, 5.0) : 0);
     }
+    parkCars(cars, side, random);
     addFurniture(mesh, side, random);
 }
 }  // namespace taut::simulation

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "Movables.h"
 #include "taut/simulation/Mesh.h"
 #include "taut/simulation/Random.h"
 
@@ -32,5 +33,6 @@ struct StreetSide
 StreetSide outerSide(const Vector3d& from, const Vector3d& to, const Terrain& height);
 StreetSide innerSide(const Vector3d& from, const Vector3d& to, const Terrain& height);
 
-void addStreetSide(Mesh& mesh, const StreetSide& side, Random& random);
+/** All that stands there, but the cars: they are added to `cars`. */
+void addStreetSide(Mesh& mesh, const StreetSide& side, Movables& cars, Random& random);
 }  // namespace taut::simulation

@@ -1,6 +1,7 @@
 #include "Walls.h"
 
 #include <cmath>
+#include <numeric>
 
 namespace taut::simulation
 {
@@ -32,5 +33,16 @@ std::vector<Recess> makeDoors(double length, Random& random)
 Recess makeDoorway(double at, double width, double height, double depth)
 {
     return {at - width / 2, at + width / 2, 0, height, depth, 0.35F, true};
+}
+
+void glaze(std::vector<Recess>& windows, const WorldConfig& config, int wall)
+{
+    Random random(static_cast<std::uint64_t>(config.seed), 5, static_cast<std::uint64_t>(wall));
+    std::vector<std::size_t> order(windows.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    shuffle(order, random);
+    order.resize(
+        static_cast<std::size_t>(std::lround(config.glass * static_cast<double>(order.size()))));
+    for (const std::size_t i : order) windows[i].open = true;
 }
 }  // namespace taut::simulation

@@ -2,6 +2,7 @@
 
 #include "taut/simulation/Mesh.h"
 #include "taut/simulation/Random.h"
+#include "taut/simulation/World.h"
 
 /** \file Walls.h
  * Walls of rooms, as seen from within. */
@@ -22,4 +23,8 @@ std::vector<Recess> makeDoors(double length, Random& random);
 
 /** A hole of some width in the middle of `at`, from the floor up; `depth` is that of its jambs. */
 Recess makeDoorway(double at, double width, double height, double depth);
+
+/** Makes config.glass of the windows of a wall of glass that a LiDAR does not see: nothing returns
+ * from there. Which ones is drawn apart from all else, for each wall by its number. */
+void glaze(std::vector<Recess>& windows, const WorldConfig& config, int wall = 0);
 }  // namespace taut::simulation

@@ -29,6 +29,9 @@ struct WorldConfig
     WorldType type = WorldType::Hall;
     int seed = 1;               //!< of what is placed at random
     int moving = 0;             //!< number of people or cars that move
+    double moved = 0;           //!< share of furniture or parked cars that stand elsewhere, 0..1
+    int moved_seed = 1;         //!< of what stands elsewhere, and where; all else stays as it is
+    double glass = 0;           //!< share of windows that give no return, 0..1
     int distinct = 0;           //!< for Halls: objects in each that the others do not have
     bool refuges = false;       //!< for Tunnel: recesses 0.4 m deep every 50 m in both walls
     std::string file;           //!< for MeshFile
