@@ -42,6 +42,7 @@ std::vector<Vector3d> makeTour()
         {0, 0}, {1, 0}, {2, 0}, {3, 0}, {3, 1}, {3, 2}, {2, 2}, {1, 2}, {1, 1}, {1, 0}, {2, 0},
         {2, 1}, {2, 2}, {3, 2}, {3, 3}, {2, 3}, {1, 3}, {0, 3}, {0, 2}, {1, 2}, {1, 1}, {0, 1}};
     std::vector<Vector3d> crossings;
+    crossings.reserve(tour.size());
     for (const auto& [i, j] : tour) crossings.push_back(crossing(i, j));
     return crossings;
 }
@@ -60,7 +61,8 @@ std::vector<Vector3d> rightLane(const std::vector<Vector3d>& tour)
     {
         const Vector3d before = right((i + n - 1) % n), after = right(i);
         const bool straight = before.dot(after) > 0.5;
-        lane.push_back(tour[i] + kLane * (straight ? after : Vector3d(before + after)));
+        const Vector3d aside = after + (straight ? 0.0 : 1.0) * before;
+        lane.emplace_back(tour[i] + kLane * aside);
     }
     return lane;
 }

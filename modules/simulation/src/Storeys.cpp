@@ -24,7 +24,7 @@ std::vector<Vector3d> corners(double out, double z = 0)
 }
 
 /** The doors of the wall with the doorway, but for those in its place. */
-std::vector<Recess> besidesDoorway(std::vector<Recess> doors)
+std::vector<Recess> besidesDoorway(const std::vector<Recess>& doors)
 {
     const Recess doorway = makeDoorway(kStairsX - kHalf, kDoorway, kDoorHeight, kJamb);
     std::vector<Recess> recesses{doorway};

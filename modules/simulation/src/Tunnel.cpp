@@ -42,26 +42,24 @@ Mesh makePlace(Random& random)
     addWallAlong(
         mesh, {0, -kPlaceY, 0}, {0, kPlaceY, 0}, 9, {makeDoorway(kPlaceY, kWidth, kHeight, 0)},
         0.5F);
+    const auto addBlock = [&](double x, double y, const Vector3d& size, float shade) {
+        addStandingBox(mesh, {x, y, 0}, size, random.uniform(-0.4, 0.4), shade);
+    };
     for (const double side : {-1.0, 1.0})
     {
-        addStandingBox(  // a house
-            mesh, {random.uniform(14, 34), side * 20, 0},
-            {random.uniform(8, 14), 7, random.uniform(3.5, 7)}, random.uniform(-0.1, 0.1), 0.6F);
+        const double house = random.uniform(14, 34);
+        addBlock(house, side * 20, {random.uniform(8, 12), 5, random.uniform(3.5, 7)}, 0.6F);
         for (int i = 0; i < 4; i++)  // containers, trees and poles around the way
         {
-            const double x = 6 + 10 * i + random.uniform(0, 4), y = random.uniform(12.5, 15);
+            const double x = 6 + 10 * i + random.uniform(0, 4), y = side * random.uniform(12.5, 14);
             if (i % 2 == 0)
-                addStandingBox(
-                    mesh, {x, side * y, 0}, {random.uniform(1, 3), 1.2, random.uniform(1, 2.5)},
-                    random.uniform(-0.5, 0.5), 0.4F);
+                addBlock(x, y, {random.uniform(1, 3), 1.2, random.uniform(1, 2.5)}, 0.4F);
             else
-                addTree(mesh, {x, side * y, 0}, {6, 0.15, 2.6, 1.7, 120}, random);
+                addTree(mesh, {x, y, 0}, {6, 0.15, 2.6, 1.7, 120}, random);
             addFrustum(mesh, {x + 4, side * 12, 0}, {x + 4, side * 12, 6}, 0.1, 0.06, 12, 0.5F);
         }
     }
-    addStandingBox(
-        mesh, {28, random.uniform(-1, 1), 0}, {random.uniform(2, 4), 2, 2.5},
-        random.uniform(-0.5, 0.5), 0.5F);
+    addBlock(28, 0, {random.uniform(2, 4), 2, 2.5}, 0.5F);
     return mesh;
 }
 
@@ -91,7 +89,7 @@ World makeTunnel(const WorldConfig& config, Random& random)
     world.mesh.append(makePlace(random), {expSO3(Vector3d(0, 0, M_PI)), Vector3d::Zero()});
     world.mesh.append(makePlace(random), {Matrix3d::Identity(), {kLength, 0, 0}});
     world.route = makeRoute();
-    world.traffic = {true, 6, 12, 2 * kLane};
+    world.traffic = {true, 6, 12, 0};
     return world;
 }
 }  // namespace taut::simulation

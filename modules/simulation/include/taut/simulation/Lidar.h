@@ -37,7 +37,8 @@ struct LidarConfig
     double detection_range = 0;  //!< at which half of the shots at a white wall return; 0 = all [m]
     double dropout = 0;          //!< part of the shots lost for no reason
     double divergence = 0;       //!< full angle of the beam; 0 = a line without mixed pixels [rad]
-    double beam_error = 0;       //!< of the elevation of each ring, standard deviation [rad]
+    /** Constant errors of a unit, see BeamErrors. */
+    double beam_error = 0;        //!< of the elevation of each ring, standard deviation [rad]
     double beam_range_error = 0;  //!< of the ranges of each ring, standard deviation [m]
     double range_bias = 0;        //!< of all ranges; > 0 measures long [m]
     Pose T_imu_lidar;
