@@ -83,7 +83,8 @@ void Recorder::writePackets(SimulatedScan& simulated, double azimuth, Duration c
     rawlog_.write(packets);
     // The truth is that of the points as the packets hold them.
     simulated.scan = decoded(packets);
-    simulated.truth = undistorted(simulated.scan, simulator_.motion(), clock);
+    const Scan ideal = simulator_.lidar().beamErrors().removed(simulated.scan);
+    simulated.truth = undistorted(ideal, simulator_.motion(), clock);
 }
 
 void Recorder::writeImuUntil(Time end)

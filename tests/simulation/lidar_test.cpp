@@ -125,6 +125,116 @@ TEST(Lidar, RangeNoiseHasTheDeviationAskedFor)
     EXPECT_NEAR(deviation, 0.03, 0.001);
 }
 
+TEST(Lidar, WithoutErrorsAPointIsRecordedAlongItsShotToTheBit)
+{
+    const Scene scene = smallScene();
+    const Motion motion = motionOf(MotionPreset::Fast, 4, 1);
+    Executor executor(1);
+    const LidarConfig config = noiseFree();
+    const SimulatedScan s = Lidar(config, 1).sweep(20, motion, scene, executor);
+    const std::vector<Shot> shots = makeVlp16Pattern(10)->sweep(20);
+    ASSERT_EQ(s.scan.points.size(), shots.size());
+    for (std::size_t i = 0; i < shots.size(); i++)
+    {
+        const double t = toSeconds(Lidar::kStart + shots[i].t);
+        const Pose T = motion.poseAt(t) * config.T_imu_lidar;
+        const auto hit = scene.cast(t, T.p, T.R * shots[i].direction, config.max_range);
+        ASSERT_TRUE(hit);
+        ASSERT_EQ(
+            s.scan.points[i].position, (hit->range * shots[i].direction).cast<float>().eval());
+    }
+    EXPECT_EQ(s.truth, undistorted(s.scan, motion));
+}
+
+TEST(Lidar, EveryRingHasItsOwnElevationForGood)
+{
+    const Scene scene = smallScene();
+    const Motion motion = motionOf(MotionPreset::Calm, 4, 3);
+    LidarConfig config = noiseFree(LidarType::Os1_128);
+    config.beam_error = 2e-3;
+    Executor executor(1);
+    const Lidar lidar(config, 5);
+    double sum = 0;
+    for (int ring = 0; ring < 128; ring++)
+        sum += std::pow(lidar.beamErrors().elevation(static_cast<std::uint16_t>(ring)), 2);
+    EXPECT_NEAR(std::sqrt(sum / 128), 2e-3, 3e-4);
+    EXPECT_NE(lidar.beamErrors().elevation(3), Lidar(config, 6).beamErrors().elevation(3));
+
+    for (const int k : {0, 30})
+    {
+        const SimulatedScan s = lidar.sweep(k, motion, scene, executor);
+        ASSERT_GT(s.scan.points.size(), 100000U);
+        const std::vector<Shot> shots = makeOs1Pattern(128, 10)->sweep(k);
+        for (std::size_t i = 0; i < shots.size(); i += 997)
+        {
+            const LidarPoint& p = s.scan.points[i];
+            const Pose T =
+                motion.poseAt(toSeconds(s.scan.timeOf(p))) * config.T_imu_lidar;  // world <- lidar
+            const Vector3d seen = (T.inverse() * s.surface[i] - shots[i].origin).normalized();
+            const double off = std::asin(seen.z()) - std::asin(shots[i].direction.z());
+            ASSERT_EQ(p.ring, shots[i].ring);
+            EXPECT_NEAR(off, lidar.beamErrors().elevation(p.ring), 1e-9);
+            // What is recorded lies along the design.
+            const Vector3d recorded = p.position.cast<double>() - shots[i].origin;
+            EXPECT_LT(recorded.normalized().cross(shots[i].direction).norm(), 2e-6);
+        }
+    }
+}
+
+TEST(Lidar, RangeErrorsAreConstantPerRingAndTheNoiseStaysAsItIs)
+{
+    const Scene scene = smallScene();
+    const Motion motion = motionOf(MotionPreset::Calm, 4, 3);
+    LidarConfig config = noiseFree(LidarType::Os1_128);
+    config.range_noise = 0.01;
+    Executor executor(1);
+    const Lidar clean(config, 5);
+    config.beam_range_error = 0.03;
+    config.range_bias = 0.2;
+    const Lidar biased(config, 5);
+    double sum = 0, square = 0;
+    for (int ring = 0; ring < 128; ring++)
+    {
+        const double error = biased.beamErrors().range(static_cast<std::uint16_t>(ring));
+        sum += error / 128;
+        square += std::pow(error - 0.2, 2) / 128;
+    }
+    EXPECT_NEAR(sum, 0.2, 0.01);
+    EXPECT_NEAR(std::sqrt(square), 0.03, 0.005);
+
+    for (const int k : {0, 30})
+    {
+        const SimulatedScan a = clean.sweep(k, motion, scene, executor);
+        const SimulatedScan b = biased.sweep(k, motion, scene, executor);
+        ASSERT_EQ(a.scan.points.size(), b.scan.points.size());
+        for (std::size_t i = 0; i < a.scan.points.size(); i += 97)
+        {
+            const LidarPoint &p = a.scan.points[i], &q = b.scan.points[i];
+            EXPECT_NEAR((q.position - p.position).norm(), biased.beamErrors().range(p.ring), 3e-6);
+        }
+    }
+}
+
+TEST(Lidar, TruthIsFreeOfTheErrorsOfTheBeams)
+{
+    const Scene scene = smallScene();
+    const Motion motion = motionOf(MotionPreset::Violent, 6, 1);
+    Executor executor(1);
+    for (const LidarType type : {LidarType::Vlp16, LidarType::Os1_64, LidarType::Rosette})
+    {
+        SCOPED_TRACE(static_cast<int>(type));
+        LidarConfig config = noiseFree(type);
+        config.beam_error = 5e-3;
+        config.beam_range_error = 0.03;
+        config.range_bias = 0.1;
+        const SimulatedScan s = Lidar(config, 1).sweep(40, motion, scene, executor);
+        const Pose T_end = motion.poseAt(toSeconds(s.scan.end));
+        for (std::size_t i = 0; i < s.truth.size(); i += 7)
+            EXPECT_LT((T_end * s.truth[i].cast<double>() - s.surface[i]).norm(), 1e-5);
+        EXPECT_GT((s.truth[0] - undistorted(s.scan, motion)[0]).norm(), 0.02F);
+    }
+}
+
 TEST(Lidar, FarAndGrazingShotsAreLostFirst)
 {
     Mesh mesh;

@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "simulation_support.h"
 
@@ -60,10 +62,38 @@ TEST(Scenario, EveryFileStaysClearOfSurfacesForItsWholeDuration)
     }
 }
 
+TEST(Scenario, TheRoutesOfTheWorldsForLoopsAreCovered)
+{
+    for (const auto& [name, laps] : std::map<std::string, double>{
+             {"storeys_walk", 1},
+             {"halls_walk", 2},
+             {"halls_walk_later", 1},
+             {"blocks_vehicle", 1},
+             {"tunnel_vehicle", 1},
+             {"field_walk", 1}})
+    {
+        SCOPED_TRACE(name);
+        ConfigSection section =
+            loadScenarioFile(std::string(TAUT_SCENARIOS) + "/" + name + ".yaml", {});
+        const Scenario s = readScenario(section);
+        const Course course = makeCourse(s.motion, makeWorld(s.world).route, s.duration, s.rest);
+        const auto end = std::lower_bound(course.times.begin(), course.times.end(), s.duration);
+        const double covered =
+            course.lengths[static_cast<std::size_t>(end - course.times.begin())] -
+            course.lengths.front();
+        EXPECT_GT(covered, laps * course.path.length());
+        EXPECT_LT(covered, 1.1 * laps * course.path.length());
+    }
+}
+
 TEST(Scenario, UnknownKeysAreNamed)
 {
     EXPECT_THAT(messageOf({"imu.rat=100"}), HasSubstr("'imu.rat'"));
     EXPECT_THAT(messageOf({"lidar.mount.zz=1"}), HasSubstr("'lidar.mount.zz'"));
+    EXPECT_THAT(messageOf({"world.type=field", "world.moved=0.3"}), HasSubstr("'world.moved'"));
+    EXPECT_THAT(messageOf({"world.type=halls", "world.distinct=7"}), HasSubstr("'world.distinct'"));
+    EXPECT_THAT(messageOf({"world.type=halls", "world.moved=2"}), HasSubstr("'world.moved'"));
+    EXPECT_THAT(messageOf({"world.type=blocks", "world.glass=1"}), HasSubstr("'world.glass'"));
     EXPECT_THAT(messageOf({"motion.type=dance"}), HasSubstr("'motion.type'"));
     EXPECT_THAT(messageOf({"imu.rate=fast"}), HasSubstr("'imu.rate'"));
     EXPECT_THAT(messageOf({"imu.rate"}), HasSubstr("key=value"));

@@ -119,6 +119,23 @@ TEST_F(SimulateApp, TruthOfPointsIsTheirPlaceAtTheEndOfTheScan)
     EXPECT_GT(checkPointTruth(file("log"), 2e-4), 3000U);  // interpolation between 0.5 ms
 }
 
+TEST_F(SimulateApp, TruthIsFreeOfTheErrorsOfTheBeamsInPacketsToo)
+{
+    const std::string errors =
+        "--points --quiet --set lidar.beam_error=0.002 --set lidar.range_bias=0.05";
+    ASSERT_EQ(simulate(errors).exit_code, 0);
+    ASSERT_EQ(simulate(errors + " --packets", "packets").exit_code, 0);
+    PointTruthReader plain(file("log.points")), packets(file("packets.points"));
+    UndistortedScan a, b;
+    while (plain.next(a) && packets.next(b))
+    {
+        ASSERT_EQ(a.positions.size(), b.positions.size());
+        for (std::size_t i = 0; i < a.positions.size(); i += 17)
+            EXPECT_LT((a.positions[i] - b.positions[i]).norm(), 0.02F);
+    }
+    EXPECT_GT(a.positions.size(), 10000U);
+}
+
 TEST_F(SimulateApp, PacketsHoldTheSamePoints)
 {
     ASSERT_EQ(simulate("--points --quiet --set imu.rate=2000 --packets").exit_code, 0);

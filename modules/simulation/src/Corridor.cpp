@@ -1,3 +1,4 @@
+#include "Walls.h"
 #include "Worlds.h"
 
 namespace taut::simulation
@@ -5,19 +6,6 @@ namespace taut::simulation
 namespace
 {
 constexpr double kLength = 60, kWidth = 2.4, kHeight = 2.7;
-
-/** Doors a few centimetres deep: all that a LiDAR can tell the place along the corridor by. */
-std::vector<Recess> doors(Random& random)
-{
-    std::vector<Recess> recesses;
-    double x = random.uniform(2.0, 4.0);
-    while (x < kLength - 3)
-    {
-        recesses.push_back({x, x + 1.0, 0, 2.1, random.uniform(0.04, 0.07), 0.35F});
-        x += random.uniform(4.0, 7.0);
-    }
-    return recesses;
-}
 }  // namespace
 
 World makeCorridor(Random& random)
@@ -29,10 +17,12 @@ World makeCorridor(Random& random)
     addQuad(
         mesh, {0, -half, kHeight}, {kLength, -half, kHeight}, {kLength, half, kHeight},
         {0, half, kHeight}, 0.75F);
-    addWall(mesh, {Matrix3d::Identity(), {0, half, 0}}, kLength, kHeight, doors(random), 0.65F);
     addWall(
-        mesh, {expSO3(Vector3d(0, 0, M_PI)), {kLength, -half, 0}}, kLength, kHeight, doors(random),
+        mesh, {Matrix3d::Identity(), {0, half, 0}}, kLength, kHeight, makeDoors(kLength, random),
         0.65F);
+    addWall(
+        mesh, {expSO3(Vector3d(0, 0, M_PI)), {kLength, -half, 0}}, kLength, kHeight,
+        makeDoors(kLength, random), 0.65F);
     for (const double x : {0.0, kLength})
         addQuad(mesh, {x, -half, 0}, {x, half, 0}, {x, half, kHeight}, {x, -half, kHeight}, 0.65F);
     for (double x = 3; x < kLength; x += 6)  // lamps

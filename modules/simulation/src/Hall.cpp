@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "Movables.h"
 #include "Worlds.h"
 
 namespace taut::simulation
@@ -37,35 +38,49 @@ void addRoof(Mesh& mesh)
     addFrustum(mesh, {0.5, 1.2, 5.2}, {kLength - 0.5, 1.2, 5.2}, 0.3, 0.3, 20, 0.6F);  // duct
 }
 
-void addClutter(Mesh& mesh, Random& random)
+/** A crate, perhaps with a smaller one on it, or a drum. */
+Movables::Thing makeClutter(Random& random)
+{
+    const double yaw = random.uniform(-0.8, 0.8);
+    const auto shade = static_cast<float>(random.uniform(0.15, 0.8));
+    if (random.uniform() < 0.3)
+        return [=](Mesh& mesh, const Pose& T)
+        { addFrustum(mesh, T.p, T.p + Vector3d(0, 0, 0.9), 0.3, 0.3, 20, shade); };
+    const double edge = random.uniform(0.5, 1.2), top = random.uniform(0.4, 1.1);
+    const Vector3d size(edge, random.uniform(0.5, 1.2), top);
+    const bool stacked = random.uniform() < 0.4;
+    return [=](Mesh& mesh, const Pose& T)
+    {
+        addStandingBox(mesh, T.p, size, yaw, shade);
+        if (!stacked) return;
+        addStandingBox(mesh, T.p + Vector3d(0, 0, top), {0.5, 0.4, 0.45}, yaw + 0.4, shade * 0.8F);
+    };
+}
+
+void addClutter(Mesh& mesh, const WorldConfig& config, Random& random)
 {
     // Crates and drums along the walls and in the middle, off the route.
-    const auto place = [&](double x, double y)
-    {
-        const double yaw = random.uniform(-0.8, 0.8);
-        const auto shade = static_cast<float>(random.uniform(0.15, 0.8));
-        if (random.uniform() < 0.3)
-        {
-            addFrustum(mesh, {x, y, 0}, {x, y, 0.9}, 0.3, 0.3, 20, shade);
-            return;
-        }
-        const double edge = random.uniform(0.5, 1.2), top = random.uniform(0.4, 1.1);
-        addStandingBox(mesh, {x, y, 0}, {edge, random.uniform(0.5, 1.2), top}, yaw, shade);
-        if (random.uniform() < 0.4)
-            addStandingBox(mesh, {x, y, top}, {0.5, 0.4, 0.45}, yaw + 0.4, shade * 0.8F);
-    };
-    for (double x = 2; x < kLength - 1; x += random.uniform(2.0, 4.0))
+    Movables clutter;
+    const auto at = [](double x, double y) { return Pose{Matrix3d::Identity(), {x, y, 0}}; };
+    const auto place = [&](double x, double y) { clutter.add(makeClutter(random), at(x, y)); };
+    for (double x = 2; x < kLength - 1;)
     {
         place(x, 0.9);
         if (x > 6) place(x, kWidth - 0.9);
+        const double gap = random.uniform(2.0, 4.0);
+        if (gap > 3.2)
+            for (const double y : {0.9, kWidth - 0.9})
+                if (x > 6) clutter.addFreePlace(at(x + gap / 2, y));
+        x += gap;
     }
     for (double y = 5; y < kWidth - 4; y += random.uniform(2.0, 4.0)) place(kLength - 0.9, y);
     for (int i = 0; i < 8; i++)
         place(random.uniform(9, kLength - 9), random.uniform(8.5, kWidth - 8.5));
+    clutter.addTo(mesh, config);
 }
 }  // namespace
 
-World makeHall(Random& random)
+World makeHall(const WorldConfig& config, Random& random)
 {
     World world;
     Mesh& mesh = world.mesh;
@@ -79,7 +94,7 @@ World makeHall(Random& random)
     addRoof(mesh);
     addRack(mesh, 13.5, kWidth / 2 + 1.2, 6, random);
     addRack(mesh, 22.5, kWidth / 2 - 1.2, 6, random);
-    addClutter(mesh, random);
+    addClutter(mesh, config, random);
     // A gate that stands open, an office with a sloping roof, and a ramp.
     addStandingBox(mesh, {0.1, 15.5, 0}, {0.2, 4, 4.2}, 0, 0.3F);
     addStandingBox(mesh, {3.2, 19.6, 0}, {4.5, 3.6, 2.8}, 0, 0.7F);

@@ -101,11 +101,15 @@ double detectionProbability(const Hit& hit, const Vector3d& direction, double de
 struct Lidar::Return
 {
     LidarPoint point;
-    Vector3d surface;  // world frame
+    Eigen::Vector3f without_errors;  // its position, sensor frame
+    Vector3d surface;                // world frame
 };
 
 Lidar::Lidar(const LidarConfig& config, std::uint64_t seed)
-    : config_(config), seed_(seed), pattern_(patternOf(config))
+    : config_(config),
+      seed_(seed),
+      pattern_(patternOf(config)),
+      beam_errors_(config, pattern_->rings(), seed)
 {
 }
 
@@ -132,13 +136,14 @@ std::vector<Lidar::Return> Lidar::castAll(
             const double turn = random.uniform(0, M_PI), radius = std::sqrt(random.uniform());
             const double t = toSeconds(kStart + shot.t);
             const Pose T = motion.poseAt(t) * config_.T_imu_lidar;
-            const Vector3d direction = T.R * shot.direction, origin = T * shot.origin;
+            const Vector3d direction = T.R * beam_errors_.looking(shot.direction, shot.ring);
+            const Vector3d origin = T * shot.origin;
             const auto hit = castBeam(scene, t, origin, direction, config_, turn, radius);
             if (!hit || loss < config_.dropout) continue;
             if (config_.detection_range > 0 &&
                 luck > detectionProbability(*hit, direction, config_.detection_range))
                 continue;
-            double range = hit->range + config_.range_noise * noise;
+            double range = hit->range + beam_errors_.range(shot.ring) + config_.range_noise * noise;
             if (config_.range_step > 0)
                 range = config_.range_step * std::round(range / config_.range_step);
             if (range < config_.min_range || range > config_.max_range) continue;
@@ -149,6 +154,7 @@ std::vector<Lidar::Return> Lidar::castAll(
                 255 * std::clamp(-hit->normal.dot(direction) * hit->reflectivity, 0.0, 1.0)));
             r.point.offset = static_cast<std::int32_t>(shot.t - shots.front().t);
             r.point.ring = shot.ring;
+            r.without_errors = beam_errors_.removed(r.point, shot.origin);
             r.surface = origin + hit->range * direction;
             parts[chunk].push_back(r);
         }
@@ -175,12 +181,15 @@ SimulatedScan Lidar::sweep(
     scan.T_imu_lidar = config_.T_imu_lidar;
     for (const Return& r : returns) scan.end = std::max(scan.end, scan.timeOf(r.point));
 
+    Scan ideal = scan;
     for (const Return& r : returns)
     {
         scan.points.push_back(r.point);
+        ideal.points.push_back(r.point);
+        ideal.points.back().position = r.without_errors;
         result.surface.push_back(r.surface);
     }
-    result.truth = undistorted(scan, motion);
+    result.truth = undistorted(ideal, motion);
     return result;
 }
 
@@ -270,6 +279,13 @@ void declare(ConfigSection& section, LidarConfig& config)
     section.key("dropout", config.dropout, {0, 1}, "part of the shots lost for no reason");
     section.key(
         "divergence", config.divergence, {0, 0.1}, "rad, full angle of the beam; 0 = a line");
+    section.key(
+        "beam_error", config.beam_error, {0, 0.1},
+        "rad, of the elevation of each ring, standard deviation");
+    section.key(
+        "beam_range_error", config.beam_range_error, kNotNegative,
+        "m, of the ranges of each ring, standard deviation");
+    section.key("range_bias", config.range_bias, kAnyNumber, "m, of all ranges; > 0 = too long");
 
     Vector3d angles(0.8, -1.4, 3.0);  // degrees: no mount is perfect
     Vector3d p(0.04, -0.03, 0.12);

@@ -154,13 +154,14 @@ void addWall(
     {
         const std::array<std::array<double, 2>, 4> corners{
             {{r.left, r.bottom}, {r.right, r.bottom}, {r.right, r.top}, {r.left, r.top}}};
-        for (std::size_t i = 0; i < 4; i++)  // its sides
+        for (std::size_t i = 0; i < 4 && r.depth != 0; i++)  // its sides
         {
             const auto &a = corners[i], &b = corners[(i + 1) % 4];
             addQuad(
                 mesh, at(a[0], 0, a[1]), at(b[0], 0, b[1]), at(b[0], r.depth, b[1]),
                 at(a[0], r.depth, a[1]), reflectivity);
         }
+        if (r.open) continue;
         addQuad(
             mesh, at(r.left, r.depth, r.bottom), at(r.right, r.depth, r.bottom),
             at(r.right, r.depth, r.top), at(r.left, r.depth, r.top), r.reflectivity);

@@ -1,44 +1,13 @@
+#include "Stairs.h"
 #include "Worlds.h"
 
 namespace taut::simulation
 {
 namespace
 {
-constexpr int kStoreys = 5, kSteps = 10;               // steps of each of a storey's two flights
-constexpr double kRise = 0.16, kRun = 0.28;            // of a step
-constexpr double kLanding = 1.4, kFlightWidth = 1.35;  // [m]
-constexpr double kEye = 0.2;                           // between the flights
-constexpr double kHalfStorey = kSteps * kRise, kStorey = 2 * kHalfStorey;
-constexpr double kLength = 2 * kLanding + kSteps * kRun, kHalfWidth = kFlightWidth + kEye / 2;
-constexpr double kSlab = 0.16;  // thickness of landings
+using namespace stairs;
 
-/** A flight that rises from z along +x (forward) or -x, on the side of the sign of y. */
-void addFlight(Mesh& mesh, double z, bool forward, double side)
-{
-    for (int i = 0; i < kSteps; i++)
-    {
-        const double along = kLanding + (i + 0.5) * kRun;
-        const double x = forward ? along : kLength - along;
-        const Vector3d center(x, side * (kEye / 2 + kFlightWidth / 2), z + (i + 1) * kRise - 0.15);
-        addBox(mesh, {Matrix3d::Identity(), center}, {kRun, kFlightWidth, 0.3}, 0.45F);
-    }
-    const double x0 = forward ? kLanding : kLength - kLanding;
-    const double x1 = forward ? kLength - kLanding : kLanding;
-    const double y = side * (kEye / 2 + 0.04);
-    for (int i = 0; i <= 5; i++)  // banisters
-    {
-        const double f = i / 5.0, x = x0 + f * (x1 - x0), bottom = z + f * kHalfStorey;
-        addFrustum(mesh, {x, y, bottom - 0.1}, {x, y, bottom + 0.9}, 0.02, 0.02, 8, 0.5F);
-    }
-    addFrustum(mesh, {x0, y, z + 0.95}, {x1, y, z + kHalfStorey + 0.95}, 0.03, 0.03, 8, 0.6F);
-}
-
-void addLanding(Mesh& mesh, double z, double x)
-{
-    addBox(
-        mesh, {Matrix3d::Identity(), {x, 0, z - kSlab / 2}}, {kLanding, 2 * kHalfWidth, kSlab},
-        0.4F);
-}
+constexpr int kStoreys = 5;
 
 void addShaft(Mesh& mesh)
 {

@@ -1,5 +1,7 @@
 #include "taut/simulation/World.h"
 
+#include <algorithm>
+#include <initializer_list>
 #include <sstream>
 
 #include "Worlds.h"
@@ -34,10 +36,30 @@ void declare(ConfigSection& section, WorldConfig& config)
          {"stairwell", WorldType::Stairwell},
          {"street", WorldType::Street},
          {"forest", WorldType::Forest},
+         {"storeys", WorldType::Storeys},
+         {"halls", WorldType::Halls},
+         {"blocks", WorldType::Blocks},
+         {"tunnel", WorldType::Tunnel},
+         {"field", WorldType::Field},
          {"mesh", WorldType::MeshFile}},
         "kind of world");
     section.key("seed", config.seed, {0, 1e9}, "of what is placed at random");
     section.key("moving", config.moving, {0, 100}, "number of people or cars that move");
+    const auto isOneOf = [&config](std::initializer_list<WorldType> types)
+    { return std::find(types.begin(), types.end(), config.type) != types.end(); };
+    if (isOneOf({WorldType::Hall, WorldType::Street, WorldType::Halls, WorldType::Blocks}))
+    {
+        section.key(
+            "moved", config.moved, {0, 1},
+            "share of furniture or parked cars that stand elsewhere");
+        section.key("moved_seed", config.moved_seed, {0, 1e9}, "of what stands where then");
+    }
+    if (isOneOf({WorldType::Storeys, WorldType::Halls}))
+        section.key("glass", config.glass, {0, 1}, "share of windows that give no return");
+    if (config.type == WorldType::Halls)
+        section.key("distinct", config.distinct, {0, 6}, "objects in each hall, not in the others");
+    if (config.type == WorldType::Tunnel)
+        section.key("refuges", config.refuges, "recesses 0.4 m deep every 50 m in both walls");
     if (config.type != WorldType::MeshFile) return;
     section.key("file", config.file, "PLY or OBJ, metres, z up");
     section.key("route", config.route, "corners 'x y z, x y z, ...' of a closed way [m]");
@@ -51,15 +73,25 @@ World makeWorld(const WorldConfig& config)
     switch (config.type)
     {
         case WorldType::Hall:
-            return makeHall(random);
+            return makeHall(config, random);
         case WorldType::Corridor:
             return makeCorridor(random);
         case WorldType::Stairwell:
             return makeStairwell(random);
         case WorldType::Street:
-            return makeStreet(random);
+            return makeStreet(config, random);
         case WorldType::Forest:
             return makeForest(random);
+        case WorldType::Storeys:
+            return makeStoreys(config, random);
+        case WorldType::Halls:
+            return makeHalls(config, random);
+        case WorldType::Blocks:
+            return makeBlocks(config, random);
+        case WorldType::Tunnel:
+            return makeTunnel(config, random);
+        case WorldType::Field:
+            return makeField(random);
         case WorldType::MeshFile:
             break;
     }

@@ -8,6 +8,7 @@
 #include "taut/core/Config.h"
 #include "taut/core/Parallel.h"
 #include "taut/core/Scan.h"
+#include "taut/simulation/BeamErrors.h"
 #include "taut/simulation/LidarPattern.h"
 #include "taut/simulation/Motion.h"
 #include "taut/simulation/Scene.h"
@@ -36,6 +37,10 @@ struct LidarConfig
     double detection_range = 0;  //!< at which half of the shots at a white wall return; 0 = all [m]
     double dropout = 0;          //!< part of the shots lost for no reason
     double divergence = 0;       //!< full angle of the beam; 0 = a line without mixed pixels [rad]
+    /** Constant errors of a unit, see BeamErrors. */
+    double beam_error = 0;        //!< of the elevation of each ring, standard deviation [rad]
+    double beam_range_error = 0;  //!< of the ranges of each ring, standard deviation [m]
+    double range_bias = 0;        //!< of all ranges; > 0 measures long [m]
     Pose T_imu_lidar;
 };
 
@@ -47,7 +52,8 @@ struct SimulatedScan
 {
     Scan scan;  //!< stamp: time of the first shot of the sweep; times since the start of the
                 //!< simulation
-    std::vector<Eigen::Vector3f> truth;  //!< undistorted(): range noise stays in it
+    /** undistorted(), without the BeamErrors; range noise stays in it. */
+    std::vector<Eigen::Vector3f> truth;
     /** What the middle of the beam met, world frame, at the time of the point. */
     std::vector<Vector3d> surface;
 };
@@ -70,6 +76,8 @@ class Lidar
      */
     SimulatedScan sweep(int k, const Motion& motion, const Scene& scene, Executor& executor) const;
 
+    const BeamErrors& beamErrors() const { return beam_errors_; }
+
     static constexpr Duration kStart = 20'000'000;  //!< the IMU is there first [ns]
 
  private:
@@ -81,5 +89,6 @@ class Lidar
     LidarConfig config_;
     std::uint64_t seed_;
     std::unique_ptr<LidarPattern> pattern_;
+    BeamErrors beam_errors_;
 };
 }  // namespace taut::simulation

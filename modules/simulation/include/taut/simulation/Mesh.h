@@ -55,6 +55,7 @@ struct Recess
     double bottom = 0, top = 0;  //!< over its lower edge [m]
     double depth = 0;            //!< [m]
     float reflectivity = 0.5F;
+    bool open = false;  //!< nothing at its back: a doorway
 };
 
 /** An upright wall with recesses that do not overlap. In the frame of T the wall spans x in [0,

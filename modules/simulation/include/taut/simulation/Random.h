@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "taut/core/Geometry.h"
 
@@ -24,6 +26,12 @@ class Random
     /** In [0, 1). */
     double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
     double uniform(double low, double high) { return low + (high - low) * uniform(); }
+
+    /** One of 0, ..., count - 1. */
+    std::size_t below(std::size_t count)
+    {
+        return static_cast<std::size_t>(uniform() * static_cast<double>(count));
+    }
 
     /** Normal of mean 0 and variance 1 (Box and Muller). */
     double normal()
@@ -60,4 +68,12 @@ class Random
     double spare_ = 0;
     bool has_spare_ = false;
 };
+
+/** Puts values in a random order (Fisher and Yates). */
+template <class T>
+void shuffle(std::vector<T>& values, Random& random)
+{
+    for (std::size_t n = values.size(); n > 1; n--)
+        std::swap(values[n - 1], values[random.below(n)]);
+}
 }  // namespace taut::simulation

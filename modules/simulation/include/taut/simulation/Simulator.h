@@ -18,6 +18,7 @@ class Simulator
 
     const Motion& motion() const { return motion_; }
     const Scene& scene() const { return scene_; }
+    const Lidar& lidar() const { return lidar_; }
     const ImuRecording& imu() const { return imu_; }
     int sweeps() const { return lidar_.sweeps(scenario_.duration); }
     SimulatedScan sweep(int k, Executor& executor) const;

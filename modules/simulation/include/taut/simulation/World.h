@@ -16,6 +16,11 @@ enum class WorldType
     Stairwell,  //!< five storeys of stairs
     Street,     //!< four streets around a block: facades, cars, poles, trees
     Forest,     //!< trunks on uneven ground
+    Storeys,    //!< two alike storeys, each a ring of plain corridors, joined by one staircase
+    Halls,      //!< four alike halls of 12 x 9 x 5 m in a row, along a corridor
+    Blocks,     //!< 3 x 3 blocks of houses on gentle hills, between streets driven more than once
+    Tunnel,     //!< 250 x 5 m, plain, between two open places
+    Field,      //!< a plane of grass 120 m across, with little at its rim
     MeshFile,   //!< a PLY or OBJ file
 };
 
@@ -24,6 +29,11 @@ struct WorldConfig
     WorldType type = WorldType::Hall;
     int seed = 1;               //!< of what is placed at random
     int moving = 0;             //!< number of people or cars that move
+    double moved = 0;           //!< share of furniture or parked cars that stand elsewhere, 0..1
+    int moved_seed = 1;         //!< of what stands elsewhere, and where; all else stays as it is
+    double glass = 0;           //!< share of windows that give no return, 0..1
+    int distinct = 0;           //!< for Halls: objects in each that the others do not have
+    bool refuges = false;       //!< for Tunnel: recesses 0.4 m deep every 50 m in both walls
     std::string file;           //!< for MeshFile
     std::string route;          //!< for MeshFile: corners "x y z, x y z, ..." of the way [m]
     double rounding = 1;        //!< for MeshFile: of the corners of the route [m]
