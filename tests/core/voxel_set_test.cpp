@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <vector>
 
 #include "numeric.h"
 #include "taut/core/Geometry.h"
@@ -50,4 +51,20 @@ TEST(VoxelSet, KnowsVoxelsApartAtTheEndsOfAKey)
             for (const double z : {-far, -0.5, 0.5, far})
                 EXPECT_TRUE(voxels.insert(voxelKey(Vector3d(x, y, z), 1.0)));
     EXPECT_EQ(voxels.size(), 64u);
+}
+
+TEST(VoxelSet, CoarserHoldsTheVoxelsOfTwiceTheEdge)
+{
+    VoxelSet fine, coarse;
+    Random random(4);
+    std::vector<Vector3d> points;
+    for (int i = 0; i < 20'000; i++) points.push_back(random.vector(20));
+    for (const Vector3d& p : points)
+    {
+        fine.insert(voxelKey(p, 10.0));
+        coarse.insert(voxelKey(p, 5.0));
+    }
+    const VoxelSet parents = fine.coarser();
+    EXPECT_EQ(parents.size(), coarse.size());
+    for (const Vector3d& p : points) ASSERT_TRUE(parents.contains(voxelKey(p, 5.0)));
 }

@@ -90,7 +90,7 @@ inline SlamConfig slamConfig()
     return config;
 }
 
-/** Carries the LiDAR along poses, one scan each half second, and tells `add` what the odometry
+/** Carries the LiDAR along poses, one scan each half metre, and tells `add` what the odometry
  * makes of it. */
 inline void carry(
     const Scene& scene, const std::function<Pose(double)>& way, double length,
@@ -102,7 +102,7 @@ inline void carry(
     for (double s = step; s <= length; s += step)
     {
         odometry.moveTo(way(s));
-        t += 500'000'000;
+        t += fromSeconds(step);  // 1 m/s
         std::vector<Vector3d> points = pointsSeenFrom(scene, odometry.truth, random);
         for (Vector3d& p : points) p = odometry.estimate * p;
         add(estimateAt(t, odometry.estimate), points);

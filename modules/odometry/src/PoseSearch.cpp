@@ -24,7 +24,7 @@ constexpr double kRate = 1;          // [rad/s]
 constexpr double kMostTurned = 1.2;  // [rad]
 
 /** A rotation levelled: the vector in the body frame points up, the heading is kept. */
-Matrix3d levelled(const Matrix3d& R, const Vector3d& up_body)
+Matrix3d levelledKeepingHeading(const Matrix3d& R, const Vector3d& up_body)
 {
     const Vector3d up = R * up_body;
     if (up.norm() < 1) return R;  // free fall tells nothing
@@ -67,7 +67,7 @@ std::vector<Pose> PoseSearch::posesAfter(
             if (std::hypot(std::max({0.0, -a, a - length}), b) > reach) continue;
             const double share = length > 0 ? std::clamp(a / length, 0.0, 1.0) : 1.0;
             const Vector3d p = from.p + a * along + b * beside + share * climb * Vector3d::UnitZ();
-            for (const Matrix3d& R : {from.R, levelled(from.R, specific_force)})
+            for (const Matrix3d& R : {from.R, levelledKeepingHeading(from.R, specific_force)})
                 for (const double yaw : steps(-most_turned, most_turned, kYawStep))
                     poses.push_back({expSO3({0, 0, yaw}) * R, p});
         }

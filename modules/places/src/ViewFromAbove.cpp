@@ -13,9 +13,10 @@ constexpr int kBands = 12;
 constexpr int kUpright = 3;         // occupied bands of a cell in which something stands
 constexpr double kGroundReach = 3;  // [m] around a cell, where its ground is looked for
 constexpr std::size_t kMostCells = 500;
-constexpr std::size_t kTurns = 8;  // that are tried, each with its opposite
-constexpr double kPeakApart = 2;   // [m] two matches of one turn are further apart
-constexpr double kAlike = 0.6;     // least share of common bands of two cells that are alike
+constexpr std::size_t kTurns = 8;     // that are tried, each with its opposite
+constexpr double kPeakApart = 2;      // [m] two matches of one turn are further apart
+constexpr std::size_t kRanked = 200;  // shifts among which these are looked for
+constexpr double kAlike = 0.6;        // least share of common bands of two cells that are alike
 
 using Key = std::pair<int, int>;
 
@@ -144,7 +145,10 @@ class ShiftVotes
                         sum += votes_[static_cast<std::size_t>(at + dy + dx)];
                 ranked.emplace_back(-sum, at);
             }
-        std::sort(ranked.begin(), ranked.end());
+        const std::size_t first = std::min<std::size_t>(ranked.size(), kRanked);
+        std::partial_sort(
+            ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(first), ranked.end());
+        ranked.resize(first);
         std::vector<std::pair<int, Eigen::Vector2d>> shifts;
         for (const auto& [votes, at] : ranked)
         {

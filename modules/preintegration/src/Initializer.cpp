@@ -28,7 +28,7 @@ Eigen::Matrix<double, 6, 6> tiltAndBiasCovariance(
 }
 
 /** Rotation body to world that turns the measured specific force upwards; yaw 0. */
-Matrix3d levelled(const Vector3d& specific_force)
+Matrix3d attitudeFrom(const Vector3d& specific_force)
 {
     const Vector3d f = specific_force.normalized();
     const double roll = std::atan2(f.y(), f.z());
@@ -237,7 +237,7 @@ Initialization Initializer::fromRest() const
 
     NavState& x = init.estimate.state;
     x.t = w.begin;
-    x.T_world_imu.R = levelled(force);
+    x.T_world_imu.R = attitudeFrom(force);
     x.bias_accel = force - x.T_world_imu.R.transpose() * kGravityWorld;
     x.bias_gyro = w.gyroMean();
 
@@ -267,7 +267,7 @@ Initialization Initializer::fromMotion() const
     init.measured_noise.accel = init.measured_noise.gyro = 0;
     NavState& x = init.estimate.state;
     x.t = first_.begin;
-    x.T_world_imu.R = levelled(first_.accelMean());
+    x.T_world_imu.R = attitudeFrom(first_.accelMean());
 
     auto& P = init.estimate.covariance;
     P.setZero();

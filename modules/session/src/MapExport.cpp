@@ -4,7 +4,7 @@ namespace taut
 {
 namespace
 {
-constexpr std::size_t kMaxVoxels = 8'000'000;  // then the memory of voxels starts anew
+constexpr std::size_t kMaxVoxels = 20'000'000;  // then new points are thinned twice as coarsely
 constexpr std::size_t kMaxSample = 1'000'000;
 }  // namespace
 
@@ -23,13 +23,14 @@ MapExport::MapExport(const MapExportConfig& config, const std::string& folder)
       folder_(folder),
       ply_(folder + "/map.ply"),
       sample_(kMaxSample),
+      spacing_(config.point_spacing),
       occupancy_(config.occupancy)
 {
 }
 
 void MapExport::addPoint(const Vector3d& p)
 {
-    if (!voxels_.insert(voxelKey(p, 1 / config_.point_spacing))) return;
+    if (!voxels_.insert(voxelKey(p, 1 / spacing_))) return;
     ply_.append({p.cast<float>(), 0});
     sample_.add(p.cast<float>());
 }
@@ -44,7 +45,11 @@ bool MapExport::isKey(const NavState& state) const
 
 void MapExport::add(const NavState& state, const std::vector<Vector3d>& points_world)
 {
-    if (voxels_.size() > kMaxVoxels) voxels_.clear();
+    if (voxels_.size() > kMaxVoxels)
+    {
+        voxels_ = voxels_.coarser();
+        spacing_ *= 2;
+    }
     for (const Vector3d& p : points_world) addPoint(p);
     if (points_world.empty() || !isKey(state)) return;
     last_key_ = state;

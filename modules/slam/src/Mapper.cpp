@@ -155,7 +155,8 @@ void Mapper::take(Submap submap)
     appearance_->add(submap);
     store_.add(std::move(submap));
     judgeStart(id);
-    searchFor(id);
+    searchFor(id, *places_);
+    searchFor(id, *appearance_);
     weighPending();
 }
 
@@ -167,7 +168,7 @@ void Mapper::finish()
     {
         const std::size_t judged = loops_.size(), accepted = accepted_;
         for (std::size_t i = first_own_; i < graph_.vertices.size(); i++)
-            searchFor(graph_.vertices[i].id);
+            searchFor(graph_.vertices[i].id, *places_);
         weighPending();
         learnDrift();
         if (round > 0 && loops_.size() == judged && accepted_ == accepted) break;
@@ -230,17 +231,16 @@ std::optional<Matrix6d> Mapper::covarianceOf(VertexId from, VertexId to)
     }
 }
 
-void Mapper::searchFor(VertexId id)
+void Mapper::searchFor(VertexId id, const PlaceRecognizer& recognizer)
 {
     const PlaceKnowledge knowledge{
         graph_, [this](VertexId from, VertexId to) { return covarianceOf(from, to); }};
-    for (const PlaceRecognizer* recognizer : {places_.get(), appearance_.get()})
-        for (LoopCandidate candidate : recognizer->candidates(id, knowledge))
-        {
-            if (!isOwn(candidate.to)) continue;
-            candidate.between_recordings = !isOwn(candidate.from);
-            if (judged_.insert({candidate.from, candidate.to}).second) judge(candidate);
-        }
+    for (LoopCandidate candidate : recognizer.candidates(id, knowledge))
+    {
+        if (!isOwn(candidate.to)) continue;
+        candidate.between_recordings = !isOwn(candidate.from);
+        if (judged_.insert({candidate.from, candidate.to}).second) judge(candidate);
+    }
 }
 
 void Mapper::judgeStart(VertexId id)

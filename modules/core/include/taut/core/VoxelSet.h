@@ -43,6 +43,20 @@ class VoxelSet
     /** Number of voxels in the set. */
     std::size_t size() const { return size_; }
 
+    /** The voxels of twice the edge that hold those of the set: keys as voxelKey() makes them with
+     * half the inverse size. */
+    VoxelSet coarser() const
+    {
+        VoxelSet parents;
+        for (const auto& [block, bits] : blocks_)
+            for (unsigned bit = 0; bit < 64; bit++)
+                if ((bits >> bit & 1) != 0)
+                    parents.insert(parentOf(
+                        block | (bit & 3u) | std::uint64_t{bit >> 2 & 3u} << 21 |
+                        std::uint64_t{bit >> 4} << 42));
+        return parents;
+    }
+
     void clear()
     {
         blocks_.clear();
@@ -52,6 +66,14 @@ class VoxelSet
  private:
     static constexpr std::uint64_t kWithin = 3 | 3ull << 21 | 3ull << 42;
 
+    /** Half of each coordinate, which is counted from 2^20. */
+    static std::uint64_t parentOf(std::uint64_t voxel)
+    {
+        std::uint64_t parent = 0;
+        for (const unsigned at : {0u, 21u, 42u})
+            parent |= ((voxel >> at & 0x1fffff) / 2 + (1u << 19)) << at;
+        return parent;
+    }
     static std::uint64_t blockOf(std::uint64_t voxel) { return voxel & ~kWithin; }
     static std::uint64_t bitOf(std::uint64_t voxel)
     {

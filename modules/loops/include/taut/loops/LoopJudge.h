@@ -11,7 +11,7 @@ namespace taut
 {
 struct LoopJudgeConfig
 {
-    int points = 2500;                    //!< of each submap that are registered
+    int points = 1500;                    //!< of each submap that are registered
     double min_overlap = 0.3;             //!< of what both could see
     double min_inliers = 0.6;             //!< of these on a surface
     double max_conflicts = 0.005;         //!< of the common cells, where the other saw free space

@@ -14,11 +14,13 @@ namespace taut
 {
 struct MapExportConfig
 {
-    double point_spacing = 0.05;  //!< [m] one point of map.ply a voxel of this size
-    double key_distance = 1.0;    //!< [m] or
-    double key_angle = 0.35;      //!< [rad] or
-    double key_time = 5.0;        //!< [s] from one key scan of the occupancy map to the next
-    int key_points = 3000;        //!< rays of a key scan
+    /** [m] one point of map.ply a voxel of this size; where 20 million are full, new points are
+     * thinned twice as coarsely, again and again. */
+    double point_spacing = 0.05;
+    double key_distance = 1.0;  //!< [m] or
+    double key_angle = 0.35;    //!< [rad] or
+    double key_time = 5.0;      //!< [s] from one key scan of the occupancy map to the next
+    int key_points = 3000;      //!< rays of a key scan
     OccupancyMap::Config occupancy;
 
     void declare(ConfigSection& section);
@@ -51,6 +53,7 @@ class MapExport
     PlyPointWriter ply_;
     VoxelSet voxels_;
     ThinnedSample<Eigen::Vector3f> sample_;
+    double spacing_;  // [m] of new points: grows where the map is huge, so that memory does not
     OccupancyWorker occupancy_;
     NavState last_key_;
     std::size_t key_scans_ = 0;

@@ -93,7 +93,7 @@ class Mapper
 
  private:
     void take(Submap submap);
-    void searchFor(VertexId id);
+    void searchFor(VertexId id, const PlaceRecognizer& recognizer);
     void judge(const LoopCandidate& candidate);
     void weighPending();
     std::vector<ClosedGap> gapsOf(const PoseGraph& odometry) const;
