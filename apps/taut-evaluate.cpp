@@ -1,10 +1,13 @@
 /** taut-evaluate: scores an estimated trajectory against the truth.
  * Exit codes: 0 scored, 1 failed or refused, 2 bad usage. */
 #include <algorithm>
+#include <cstdio>
 #include <iostream>
 #include <optional>
 
 #include "CommandLine.h"
+#include "taut/slam/LoopScores.h"
+#include "taut/trajectory/Interpolation.h"
 #include "taut/trajectory/Plots.h"
 #include "taut/trajectory/Report.h"
 #include "taut/trajectory/TrajectoryFile.h"
@@ -13,7 +16,7 @@ namespace
 {
 struct Options
 {
-    std::string truth, estimate, kitti_times, points, points_truth, plot_folder;
+    std::string truth, estimate, kitti_times, points, points_truth, plot_folder, loops;
     taut::PlotFormat plot_format = taut::PlotFormat::Svg;
     bool json = false;
     double from_time = 0;  // [s] since the first true pose
@@ -79,6 +82,9 @@ std::optional<Options> parse(int argc, char** argv)
         cmd);
     TCLAP::ValueArg<std::string> points_truth(
         "", "points-truth", "True undistorted points (of taut-simulate)", false, "", "FILE", cmd);
+    TCLAP::ValueArg<std::string> loops(
+        "", "loops", "Score the loops of that folder of results too: precision, recall, errors",
+        false, "", "OUT/", cmd);
     TCLAP::ValueArg<std::string> plot(
         "", "plot", "Draw the trajectory and the errors into that folder (needs gnuplot)", false,
         "", "FOLDER", cmd);
@@ -104,6 +110,9 @@ std::optional<Options> parse(int argc, char** argv)
     options.points_truth = points_truth.getValue();
     if (options.points.empty() != options.points_truth.empty())
         throw taut::UsageError("--points and --points-truth need each other");
+    options.loops = loops.getValue();
+    if (!options.loops.empty() && options.json)
+        throw taut::UsageError("--loops has no JSON yet: leave one of both out");
     options.plot_folder = plot.getValue();
     options.plot_format = plotFormatOf(plot_format.getValue());
     if (min_poses.getValue() < 0) throw taut::UsageError("--min-poses is negative");
@@ -118,6 +127,32 @@ taut::Trajectory since(taut::Time begin, taut::Trajectory trajectory)
         [begin](const taut::StampedPose& pose) { return pose.t >= begin; });
     trajectory.erase(trajectory.begin(), first);
     return trajectory;
+}
+
+/** The truth between its poses; nothing outside, or in a gap of a second. */
+std::optional<taut::Pose> poseAt(const taut::Trajectory& truth, taut::Time t)
+{
+    const auto after = std::lower_bound(
+        truth.begin(), truth.end(), t,
+        [](const taut::StampedPose& pose, taut::Time at) { return pose.t < at; });
+    if (after == truth.end()) return {};
+    if (after->t == t) return after->T_world_imu;
+    if (after == truth.begin()) return {};
+    const taut::StampedPose& before = *(after - 1);
+    const double gap = taut::toSeconds(after->t - before.t);
+    if (gap > 1) return {};
+    return taut::interpolate(
+        before.T_world_imu, after->T_world_imu, taut::toSeconds(t - before.t) / gap);
+}
+
+void printLoops(const taut::LoopScores& s)
+{
+    std::printf(
+        "\nloops      %d in the graph, %d wrong: precision %.3f\n"
+        "revisits   %d submaps, %d recognised: recall %.3f\n"
+        "errors     largest %.3f m; NEES %.2f a degree of freedom\n",
+        s.loops, s.wrong, s.precision(), s.revisits, s.recognised, s.recall(), s.largest_error,
+        s.nees);
 }
 
 void run(const Options& options)
@@ -142,6 +177,9 @@ void run(const Options& options)
         points = taut::scorePoints(
             options.points_truth, options.points, options.score.min_coverage, begin);
     std::cout << (options.json ? scoresAsJson(scores, points) : scoresAsText(scores, points));
+    std::cout.flush();
+    if (!options.loops.empty())
+        printLoops(taut::scoreLoops(options.loops, [&](taut::Time t) { return poseAt(truth, t); }));
     if (!options.plot_folder.empty())
         taut::plotScores(scores, truth, options.plot_folder, options.plot_format);
 }

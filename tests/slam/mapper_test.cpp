@@ -14,6 +14,7 @@
 #include "taut/graph/SparseGraphOptimizer.h"
 #include "taut/places/NearbyPlaces.h"
 #include "taut/places/PlacesByView.h"
+#include "taut/slam/LoopScores.h"
 #include "taut/slam/LoopsFile.h"
 #include "taut/slam/SimpleMapFile.h"
 #include "temporary_folder.h"
@@ -126,6 +127,32 @@ TEST_F(AMapper, LeavesAPathWithoutDriftAsItIsThoughItSeesLoops)
     EXPECT_FALSE(mapper->moved());
     for (const auto& [t, pose] : pathOf(*mapper))
         EXPECT_LT((pose.p - odometry_path.at(t).p).norm(), 1e-9);
+}
+
+TEST_F(AMapper, HasItsLoopsScored)
+{
+    const auto mapper = walk(220, 1.003, 1.5e-4);
+    std::filesystem::create_directories(folder / "run");
+    std::filesystem::rename(folder / "submaps0", folder / "run/submaps");
+    writeG2o(folder / "run/graph.g2o", mapper->resultGraph());
+    const auto at = [&](Time t)
+    {
+        const auto found = truth.find(t);
+        return found == truth.end() ? std::optional<Pose>() : found->second;
+    };
+    const LoopScores right = scoreLoops(folder / "run", at);
+    EXPECT_EQ(right.loops, static_cast<int>(mapper->accepted()));
+    EXPECT_EQ(right.wrong, 0);
+    EXPECT_GE(right.revisits, 5);
+    EXPECT_GE(right.recall(), 0.8);
+    // A loop that is a metre off is found out.
+    PoseGraph graph = mapper->resultGraph();
+    for (RelativeEdge& edge : graph.relative_edges)
+        if (edge.kind == EdgeKind::LoopClosure) edge.T_from_to.p.y() += 1;
+    writeG2o(folder / "run/graph.g2o", graph);
+    const LoopScores wrong = scoreLoops(folder / "run", at);
+    EXPECT_EQ(wrong.wrong, wrong.loops);
+    EXPECT_EQ(wrong.recognised, 0);
 }
 
 TEST_F(AMapper, GivesTheSameBitsWithTwoThreads)
