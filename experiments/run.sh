@@ -5,7 +5,7 @@
 #   experiments/run.sh [-j JOBS] [-s SEEDS] [-o FOLDER] [-g "GROUPS"] [-n]
 #     -j  jobs at a time (default: the cores there are)      -s  seeds of sweeps and starts (default 5)
 #     -o  folder of results (default out/experiments)        -n  leave docs/ alone
-#     -g  of: sweep recording cost sequence start (default: all)
+#     -g  of: sweep recording cost sequence start (default: these), slam (prints its table: slam.sh)
 # Recordings that are not in the repository are taken from $TAUT_DATA (default ../shared/data) and left out, visibly,
 # where they are absent.
 set -euo pipefail
@@ -69,6 +69,7 @@ plan() { # the jobs of a group, one a line
 
 failed=0
 for group in $groups; do
+  [ "$group" != slam ] || { "$root/experiments/slam.sh" -s "$seeds" -o "$out/slam" || failed=1; continue; }
   echo "$(date +%T) $group" >&2
   at_once=$jobs
   [ "$group" = cost ] && at_once=1 # the modes in turn, alone on the machine

@@ -13,6 +13,7 @@
 #include "taut/core/Plugins.h"
 #include "taut/rawlog/PrefetchedRawlog.h"
 #include "taut/render/OSMesaRenderer.h"
+#include "taut/session/ResultFolder.h"
 #include "taut/session/Session.h"
 #include "taut/session/registerSession.h"
 
@@ -63,11 +64,14 @@ void makeFolder(const Options& o)
 {
     if (!o.map.empty() && fs::exists(o.output) && fs::equivalent(o.map, o.output))
         throw UsageError("-o is the folder of -m: the map would be overwritten");
-    if (fs::exists(o.output) && !fs::is_directory(o.output))
-        throw std::runtime_error("'" + o.output + "' is not a folder");
-    if (fs::exists(fs::path(o.output) / "trajectory.tum") && !o.overwrite)
-        throw UsageError("'" + o.output + "' holds results already; -w overwrites them");
-    fs::create_directories(o.output);
+    try
+    {
+        prepareResultFolder(o.output, o.overwrite, {o.input, o.config, o.rig});
+    }
+    catch (const FolderInUse& e)
+    {
+        throw UsageError(e.what());
+    }
 }
 
 /** One run of the program: from a rawlog to a folder of results. */

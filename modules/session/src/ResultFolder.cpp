@@ -1,0 +1,100 @@
+#include "taut/session/ResultFolder.h"
+
+#include <filesystem>
+#include <fstream>
+
+namespace fs = std::filesystem;
+
+namespace taut
+{
+namespace
+{
+constexpr const char* kMarker = ".taut-results";
+constexpr const char* kResults[] = {
+    "trajectory.tum",
+    "trajectory_kitti.txt",
+    "trajectory_odometry.tum",
+    "states.csv",
+    "timing.csv",
+    "undistorted.points",
+    "map.ply",
+    "map.ot",
+    "map.bt",
+    "map.simplemap",
+    "graph.g2o",
+    "loops.csv",
+    "metrics.json",
+    "config.yaml",
+    "rig.yaml",
+    "snapshot_top.png",
+    "snapshot_oblique.png",
+    "snapshot_follow.png"};
+
+bool isThere(const fs::path& path)
+{
+    return fs::exists(fs::symlink_status(path));  // a link that leads nowhere too
+}
+
+bool isSubmapFile(const fs::path& path)
+{
+    const std::string stem = path.stem().string();
+    return (path.extension() == ".tsm" || path.extension() == ".ply") && !stem.empty() &&
+           stem.find_first_not_of("0123456789") == std::string::npos;
+}
+
+void refuseInputs(const fs::path& folder, const std::vector<std::string>& inputs)
+{
+    for (const std::string& input : inputs)
+    {
+        if (input.empty() || !fs::exists(input)) continue;
+        for (const char* name : kResults)
+            if (fs::exists(folder / name) && fs::equivalent(input, folder / name))
+                throw FolderInUse(
+                    "the results would overwrite '" + input +
+                    "', which is read: choose another folder");
+    }
+}
+
+/** Whether taut's results are in the folder. Before there was a marker, metrics.json told. */
+bool isMarked(const fs::path& folder)
+{
+    if (isThere(folder / kMarker)) return true;
+    std::ifstream metrics(folder / "metrics.json");
+    std::string text(400, '\0');
+    metrics.read(text.data(), static_cast<std::streamsize>(text.size()));
+    return text.find("\"taut-slam\"") != std::string::npos;
+}
+
+void removeResults(const fs::path& folder)
+{
+    for (const char* name : kResults) fs::remove(folder / name);
+    if (!fs::is_directory(fs::symlink_status(folder / "submaps"))) return;
+    for (const auto& entry : fs::directory_iterator(folder / "submaps"))
+        if (isSubmapFile(entry.path())) fs::remove(entry.path());
+}
+}  // namespace
+
+void prepareResultFolder(
+    const std::string& folder_name, bool overwrite, const std::vector<std::string>& inputs)
+{
+    const fs::path folder = folder_name;
+    if (fs::exists(folder) && !fs::is_directory(folder))
+        throw std::runtime_error("'" + folder_name + "' is not a folder");
+    refuseInputs(folder, inputs);
+    for (const char* name : kResults)
+    {
+        if (!isThere(folder / name)) continue;
+        if (!isMarked(folder))
+            throw FolderInUse(
+                "'" + folder_name + "' holds a file '" + name +
+                "' that taut did not write: choose another folder");
+        if (!overwrite)
+            throw FolderInUse("'" + folder_name + "' holds results already; -w overwrites them");
+    }
+    fs::create_directories(folder);
+    if (isMarked(folder)) removeResults(folder);
+    std::ofstream marker(folder / kMarker);
+    marker << "Results of taut-slam, which `taut-slam -w` removes.\n";
+    if (!marker) throw std::runtime_error("cannot write to '" + folder_name + "'");
+}
+}  // namespace taut
