@@ -376,3 +376,39 @@ TEST(ScanProblem, StepsAreBoundedInEveryCoordinate)
             EXPECT_EQ(most[state + NavState::kBiasGyro + i], c.max_step_bias_gyro);
         }
 }
+
+TEST(ScanProblem, ManyNormalsThatErrSayNothingOfAnOpenDirection)
+{
+    // A plain corridor along x: of its surfaces none looks that way, but for a degree of error.
+    const auto informationAlong = [](double tilt, double open_share, double shown_share)
+    {
+        Instance instance(Undistortion::Bridge, PreviousState::Released);
+        instance.config.open_share = open_share;
+        instance.config.shown_share = shown_share;
+        std::vector<Correspondence> corridor = scene().correspondences;
+        Random random(8);
+        for (std::size_t i = 0; i < corridor.size(); i++)
+        {
+            if (corridor[i].surface != Surface::Plane) continue;
+            const Vector3d normal = i % 2 == 0 ? Vector3d::UnitY() : Vector3d::UnitZ();
+            corridor[i].direction =
+                (normal + tilt * random.normal() * Vector3d::UnitX()).normalized();
+            corridor[i].point = scene().truePoint(
+                scene().features.stamp + scene().features.points[i].offset,
+                scene().features.points[i].position);
+        }
+        instance.lidar.setCorrespondences(
+            corridor, *instance.path, instance.problem->predictedPoseCovariance(), 1);
+        instance.problem->relinearize();
+        return instance.problem->lidarInformation().block<3, 3>(0, 0).eval();
+    };
+    const Matrix3d believed = informationAlong(0.01, 0, 1e-9);
+    const Matrix3d left_open = informationAlong(0.01, 3e-4, 1e-3);
+    EXPECT_GT(believed(0, 0), 100);  // hundreds of matches that know a decimetre each
+    EXPECT_LT(left_open(0, 0), 0.01 * believed(0, 0));
+    EXPECT_NEAR(left_open(1, 1) / believed(1, 1), 1, 1e-3);
+    EXPECT_NEAR(left_open(2, 2) / believed(2, 2), 1, 1e-3);
+    // What is shown is left as it is.
+    const Matrix3d shown = informationAlong(0.1, 0, 1e-9);
+    EXPECT_LT((informationAlong(0.1, 3e-4, 1e-3) - shown).norm(), 1e-9 * shown.norm());
+}

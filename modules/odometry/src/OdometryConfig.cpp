@@ -17,6 +17,12 @@ void EstimationConfig::declare(ConfigSection& s)
     s.key("balance", balance, "scale the LiDAR noise by its own reduced chi-square");
     s.key("balance_min_matches", balance_min_matches, {1, 1e6}, "fewest matches to do so");
     s.key("inflation", inflation, kPositive, "factor on the LiDAR noise for what residuals share");
+    s.key(
+        "open_share", open_share, {0, 0.3},
+        "share of the information on the position: a direction that has less is open");
+    s.key("shown_share", shown_share, {1e-9, 0.34}, "the same: one that has more is believed");
+    if (!(open_share < shown_share))
+        throw ConfigError("estimation.open_share has to be below estimation.shown_share");
     s.key("accel_bias_sigma", accel_bias_sigma, kPositive, "m/s^2, absolute prior");
     s.key("gyro_bias_sigma", gyro_bias_sigma, kPositive, "rad/s, absolute prior");
     s.key("bias_time", bias_time, kPositive, "s, in which the absolute prior is renewed once");

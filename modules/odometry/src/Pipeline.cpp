@@ -21,6 +21,9 @@ Initialization startWithoutImu(const Scan& first)
     start.estimate.state.t = first.stamp - 1;  // a point is used if it is later than the state
     return start;
 }
+/** [s] for which an IMU bridges a direction that nothing shows: to decimetres, if it is a good one.
+ */
+constexpr double kOpenForLong = 10;
 }  // namespace
 
 Pipeline::Pipeline(OdometryConfig config, Executor& executor, WarningSink warn, EventSink events)
@@ -217,10 +220,31 @@ void Pipeline::judge(const ScanResult& result)
     {
         cause = "imu_silent";
     }
+    else if (isOpenForLong(result))
+    {
+        cause = "position_open";
+        if (cause != lost_)
+            warn(
+                t, cause,
+                format(
+                    "for %.0f s hardly any match has shown the position along one direction: the "
+                    "IMU alone tells it",
+                    kOpenForLong));
+    }
     if (cause == lost_) return;
     if (!lost_.empty()) events_(Recovered{t, lost_});
     if (!cause.empty()) events_(Lost{t, cause});
     lost_ = cause;
+}
+
+bool Pipeline::isOpenForLong(const ScanResult& result)
+{
+    const auto& information = result.report.translation_information;  // ascending
+    const double all = information[0] + information[1] + information[2];
+    const Time t = result.estimate.state.t;
+    if (!result.report.lidar_used || information[0] >= config_.estimation.open_share * all)
+        shown_at_ = t;
+    return shown_at_ && toSeconds(t - *shown_at_) > kOpenForLong;
 }
 
 void Pipeline::warn(Time t, const std::string& kind, const std::string& text) const

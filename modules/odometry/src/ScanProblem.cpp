@@ -1,7 +1,9 @@
 #include "taut/odometry/ScanProblem.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 
 namespace taut
@@ -15,6 +17,31 @@ NavState::Matrix symmetricInverse(const NavState::Matrix& m)
     const NavState::Matrix inverse =
         NavState::Matrix(0.5 * (m + m.transpose())).ldlt().solve(NavState::Matrix::Identity());
     return 0.5 * (inverse + inverse.transpose());
+}
+/** Takes away what the LiDAR says of a direction of the position that hardly any of its matches
+ * show: normals that err by a degree or two would say as much of a direction that nothing shows,
+ * and thousands of them together would be believed. */
+void leaveOpen(const EstimationConfig& config, ProblemMatrix& hessian, ProblemVector& gradient)
+{
+    const Matrix3d position =
+        hessian.block<3, 3>(kN + NavState::kPosition, kN + NavState::kPosition);
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(position);
+    const double all = eigen.eigenvalues().sum();
+    if (!(all > 0)) return;
+    Matrix3d keep = Matrix3d::Zero();
+    for (int i = 0; i < 3; i++)
+    {
+        const double share = eigen.eigenvalues()[i] / all;
+        const double kept = std::clamp(
+            (share - config.open_share) / (config.shown_share - config.open_share), 0.0, 1.0);
+        keep += kept * eigen.eigenvectors().col(i) * eigen.eigenvectors().col(i).transpose();
+    }
+    for (const int at : {NavState::kPosition, kN + NavState::kPosition})
+    {
+        hessian.middleRows<3>(at) = (keep * hessian.middleRows<3>(at)).eval();
+        hessian.middleCols<3>(at) = (hessian.middleCols<3>(at) * keep).eval();
+        gradient.segment<3>(at) = (keep * gradient.segment<3>(at)).eval();
+    }
 }
 }  // namespace
 
@@ -135,6 +162,7 @@ double ScanProblem::linearize(ProblemMatrix& hessian, ProblemVector& gradient)
     lidar_hessian_.setZero(2 * kN, 2 * kN);
     ProblemVector lidar_gradient = ProblemVector::Zero(2 * kN);
     if (use_lidar_) cost += lidar_.linearize(path_, balance_, lidar_hessian_, lidar_gradient);
+    leaveOpen(config_, lidar_hessian_, lidar_gradient);
     hessian += lidar_hessian_.bottomRightCorner(dimension(), dimension());
     gradient += lidar_gradient.tail(dimension());
     hessian_ = hessian;

@@ -37,7 +37,8 @@ struct Refined
 struct Lost
 {
     Time t = 0;
-    /** Kind of the warning that says why: pose_doubtful, few_correspondences, imu_silent. */
+    /** Kind of the warning that says why: pose_doubtful, few_correspondences, imu_silent,
+     * position_open. */
     std::string cause;
 };
 

@@ -47,6 +47,7 @@ class Pipeline
     void process(const Scan& scan);
     void refineLast(const ScanResult& next);
     void judge(const ScanResult& result);
+    bool isOpenForLong(const ScanResult& result);
     void warn(Time t, const std::string& kind, const std::string& text) const;
 
     OdometryConfig config_;
@@ -57,6 +58,7 @@ class Pipeline
     Odometry odometry_;
     std::optional<Initialization> initialization_;
     std::optional<Sweep> last_sweep_;  // whose end is not final yet
+    std::optional<Time> shown_at_;     // when the last scan showed the position in all directions
     std::string lost_;                 // cause; empty: the pose is not in doubt
     std::size_t estimated_ = 0;
     bool needs_imu_, finished_ = false;
