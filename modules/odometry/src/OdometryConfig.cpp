@@ -19,7 +19,7 @@ void EstimationConfig::declare(ConfigSection& s)
     s.key("inflation", inflation, kPositive, "factor on the LiDAR noise for what residuals share");
     s.key(
         "open_share", open_share, {0, 0.3},
-        "share of the information on the position: a direction that has less is open");
+        "share of the information on the position: a direction with less is open; 0: none is");
     s.key("shown_share", shown_share, {1e-9, 0.34}, "the same: one that has more is believed");
     if (!(open_share < shown_share))
         throw ConfigError("estimation.open_share has to be below estimation.shown_share");

@@ -24,6 +24,8 @@ Initialization startWithoutImu(const Scan& first)
 /** [s] for which an IMU bridges a direction that nothing shows: to decimetres, if it is a good one.
  */
 constexpr double kOpenForLong = 10;
+/** Share of the matches' information on the position: normals that err by a degree show as much. */
+constexpr double kHardlyShown = 3e-4;
 }  // namespace
 
 Pipeline::Pipeline(OdometryConfig config, Executor& executor, WarningSink warn, EventSink events)
@@ -242,8 +244,7 @@ bool Pipeline::isOpenForLong(const ScanResult& result)
     const auto& information = result.report.translation_information;  // ascending
     const double all = information[0] + information[1] + information[2];
     const Time t = result.estimate.state.t;
-    if (!result.report.lidar_used || information[0] >= config_.estimation.open_share * all)
-        shown_at_ = t;
+    if (!result.report.lidar_used || information[0] >= kHardlyShown * all) shown_at_ = t;
     return shown_at_ && toSeconds(t - *shown_at_) > kOpenForLong;
 }
 

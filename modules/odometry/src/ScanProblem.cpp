@@ -23,6 +23,7 @@ NavState::Matrix symmetricInverse(const NavState::Matrix& m)
  * and thousands of them together would be believed. */
 void leaveOpen(const EstimationConfig& config, ProblemMatrix& hessian, ProblemVector& gradient)
 {
+    if (!(config.open_share > 0)) return;
     const Matrix3d position =
         hessian.block<3, 3>(kN + NavState::kPosition, kN + NavState::kPosition);
     const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(position);

@@ -34,8 +34,8 @@ struct EstimationConfig
     double inflation = 1.0;  //!< factor on the LiDAR noise for what its residuals share
 
     /** Share of the matches' information on the position that lies along a direction: below the
-     * first it counts as nothing, from the second on as what it is. */
-    double open_share = 3e-4, shown_share = 1e-3;
+     * first it counts as nothing, from the second on as what it is. 0: all of it counts. */
+    double open_share = 0, shown_share = 1e-3;
 
     // Absolute prior of the biases, renewed once in `bias_time`.
     double accel_bias_sigma = 0.2;  //!< [m/s^2]
