@@ -24,6 +24,8 @@ Initialization startWithoutImu(const Scan& first)
 /** [s] for which an IMU bridges a direction that nothing shows: to decimetres, if it is a good one.
  */
 constexpr double kOpenForLong = 10;
+/** [m] that the body has gone meanwhile: one that turns in place is not lost. */
+constexpr double kOpenWay = 5;
 /** Share of the matches' information on the position: normals that err by a degree show as much. */
 constexpr double kHardlyShown = 3e-4;
 }  // namespace
@@ -244,8 +246,11 @@ bool Pipeline::isOpenForLong(const ScanResult& result)
     const auto& information = result.report.translation_information;  // ascending
     const double all = information[0] + information[1] + information[2];
     const Time t = result.estimate.state.t;
-    if (!result.report.lidar_used || information[0] >= kHardlyShown * all) shown_at_ = t;
-    return shown_at_ && toSeconds(t - *shown_at_) > kOpenForLong;
+    if (!result.report.lidar_used || information[0] >= kHardlyShown * all)
+        last_shown_ = result.estimate.state;
+    if (!last_shown_ || toSeconds(t - last_shown_->t) <= kOpenForLong) return false;
+    const Pose& now = result.estimate.state.T_world_imu;
+    return (now.p - last_shown_->T_world_imu.p).norm() > kOpenWay;
 }
 
 void Pipeline::warn(Time t, const std::string& kind, const std::string& text) const

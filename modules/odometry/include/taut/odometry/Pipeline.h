@@ -58,8 +58,9 @@ class Pipeline
     Odometry odometry_;
     std::optional<Initialization> initialization_;
     std::optional<Sweep> last_sweep_;  // whose end is not final yet
-    std::optional<Time> shown_at_;     // when the last scan showed the position in all directions
-    std::string lost_;                 // cause; empty: the pose is not in doubt
+    std::optional<NavState>
+        last_shown_;    // by the last scan that showed the position in all directions
+    std::string lost_;  // cause; empty: the pose is not in doubt
     std::size_t estimated_ = 0;
     bool needs_imu_, finished_ = false;
 };
