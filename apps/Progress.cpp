@@ -5,8 +5,18 @@
 
 #include <cstdio>
 
+#include "taut/core/format.h"
+
 namespace taut
 {
+namespace
+{
+double seconds(std::chrono::steady_clock::duration d)
+{
+    return std::chrono::duration<double>(d).count();
+}
+}  // namespace
+
 Progress::Progress(bool show) : show_(show), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress()
@@ -24,23 +34,42 @@ void Progress::clear()
 
 void Progress::update(double fraction, int scans, double seconds_done)
 {
+    if (!isDue()) return;
+    const double wall = seconds(last_ - start_);
+    draw(
+        fraction, format(
+                      "%.1f s done  %.1f scans/s  %.1f x real time", seconds_done, scans / wall,
+                      seconds_done / wall));
+}
+
+void Progress::update(double fraction)
+{
+    if (!begun_) start_ = last_ = Clock::now();
+    begun_ = true;
+    if (isDue()) draw(fraction, "undistorting again");
+}
+
+bool Progress::isDue()
+{
     const auto now = Clock::now();
-    const auto seconds = [](Clock::duration d) { return std::chrono::duration<double>(d).count(); };
-    if (!show_ || seconds(now - last_) < (terminal_ ? 0.2 : 5.0)) return;
+    if (!show_ || seconds(now - last_) < (terminal_ ? 0.2 : 5.0)) return false;
     last_ = now;
-    const double wall = seconds(now - start_);
+    return true;
+}
+
+void Progress::draw(double fraction, const std::string& numbers)
+{
+    const double wall = seconds(last_ - start_);
     const double left = fraction > 1e-3 ? wall * (1 - fraction) / fraction : 0;
-    char numbers[160];
-    std::snprintf(
-        numbers, sizeof numbers,
-        "%5.1f %%  %.1f s done  %.1f scans/s  %.1f x real time  ETA %.0f s", 100 * fraction,
-        seconds_done, scans / wall, seconds_done / wall, left);
+    const std::string line =
+        format("%5.1f %%  ", 100 * fraction) + numbers + format("  ETA %.0f s", left);
     if (!terminal_)
     {
-        std::fprintf(stderr, "%s\n", numbers);
+        std::fprintf(stderr, "%s\n", line.c_str());
         return;
     }
-    std::fprintf(stderr, "\r\033[K%s %s", mrpt::system::progress(fraction, 20).c_str(), numbers);
+    std::fprintf(
+        stderr, "\r\033[K%s %s", mrpt::system::progress(fraction, 20).c_str(), line.c_str());
     std::fflush(stderr);
     drawn_ = true;
 }

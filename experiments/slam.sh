@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
 # Loops against the truth: simulates drives whose beams err as real ones do, closes loops, scores both. Prints a table.
 # Each run leaves a line of its own, so that it goes on where it was stopped.
-#   experiments/slam.sh [-s SEEDS] [-o FOLDER]
+#   experiments/slam.sh [-s SEEDS] [-o FOLDER] [-c "SCENARIO[:SECONDS] ..."]
 #     -s  seeds a scenario (default 1)      -o  folder of results (default out/experiments/slam)
 # Called by `experiments/run.sh -g slam` with the seeds that are asked for there.
 set -euo pipefail
 # shellcheck source=common.sh
 . "$(dirname "$0")/common.sh"
-seeds=1 out=$root/out/experiments/slam
-while getopts s:o: option; do
+seeds=1 out=$root/out/experiments/slam scenarios=
+while getopts s:o:c: option; do
   case $option in
     s) seeds=$OPTARG ;;
     o) out=$OPTARG ;;
+    c) scenarios=$OPTARG ;;
     *) sed -n '2,/^set/{/^#/p}' "$0" >&2; exit 2 ;;
   esac
 done
@@ -21,7 +22,7 @@ trap 'rm -rf "$work"' EXIT
 
 # Each beam looks 0.1 degrees aside and measures 1.5 cm wrong, all of them 1 cm (standard deviations).
 errors=(--set lidar.beam_error=0.0017 --set lidar.beam_range_error=0.015 --set lidar.range_bias=0.01)
-scenarios="storeys_walk blocks_vehicle halls_walk field_walk tunnel_vehicle street_vehicle:110 corridor_walk:120 forest_flight:100"
+scenarios=${scenarios:-"storeys_walk blocks_vehicle halls_walk field_walk tunnel_vehicle street_vehicle:110 corridor_walk:120 forest_flight:100"}
 
 run() { # SCENARIO SECONDS SEED
   local result=$out/$1-$3.row duration=()

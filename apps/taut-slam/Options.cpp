@@ -45,6 +45,12 @@ std::vector<double> startOf(const std::string& text)
     numbers[3] *= M_PI / 180;
     return numbers;
 }
+void requireMapFor(const Options& o, bool localize)
+{
+    if (localize && o.extend_map) throw UsageError("--localize and --extend exclude each other");
+    if (o.map.empty() && (localize || o.extend_map || !o.start_at.empty()))
+        throw UsageError("--localize, --extend and --start-at need a map: -m");
+}
 }  // namespace
 
 bool parseOptions(int argc, char** argv, Options& o)
@@ -109,10 +115,7 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.map = map.getValue();
     o.extend_map = extend.getValue();
     if (!start.getValue().empty()) o.start_at = startOf(start.getValue());
-    if (localize.getValue() && o.extend_map)
-        throw UsageError("--localize and --extend exclude each other");
-    if (o.map.empty() && (localize.getValue() || o.extend_map || !o.start_at.empty()))
-        throw UsageError("--localize, --extend and --start-at need a map: -m");
+    requireMapFor(o, localize.getValue());
     o.lidar_label = log.lidarLabel();
     o.imu_label = log.imuLabel();
     o.from_time = log.fromTime();

@@ -81,6 +81,7 @@ class Run
     explicit Run(const Options& options)
         : options_(options),
           progress_(options.verbosity >= 2),
+          second_pass_(options.verbosity >= 2),
           warnings_([this](const Warning& w) { print(w); })
     {
         if (!options.rig.empty())
@@ -115,11 +116,15 @@ class Run
             log,
             [&](double share)
             {
-                progress_.update(share, session.scans(), session.duration());
+                if (session.inSecondPass())
+                    second_pass_.update(share);
+                else
+                    progress_.update(share, session.scans(), session.duration());
                 return !interrupted;
             },
             [&] { return std::make_unique<PrefetchedRawlog>(rawlogConfig(options_, rig_)); });
         progress_.clear();
+        second_pass_.clear();
         report(outcome);
         if (!outcome.failure.empty())
             throw std::runtime_error(outcome.failure + "; what was done before is saved");
@@ -173,7 +178,7 @@ class Run
     const Options& options_;
     Rig rig_;
     SessionConfig session_;
-    Progress progress_;
+    Progress progress_, second_pass_;
     WarningLog warnings_;
 };
 

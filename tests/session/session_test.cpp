@@ -249,6 +249,38 @@ TEST_F(SessionTest, WithoutAWayToReadAgainMovesThePointsOfSubmaps)
     EXPECT_GT(outcome.map_points, 1000u);
 }
 
+TEST_F(SessionTest, FallsBackToTheSubmapsWhereTheSecondPassFailsOrIsStopped)
+{
+    config.method = methodWithShortSubmaps();
+    Player first(imu, scans);
+    Session(config, warnings).run(first, [](double) { return true; });
+    config.known_map = KnownMap{config.folder, false, {}};
+    const auto again = [&](const char* name, bool fails)
+    {
+        config.folder = folder / name;
+        std::filesystem::create_directory(config.folder);
+        Player player(imu, scans);
+        Session session(config, warnings);
+        return session.run(
+            player, [&](double share) { return !session.inSecondPass() || share < 0.5; },
+            [&]() -> std::unique_ptr<MeasurementStream>
+            {
+                if (fails) throw std::runtime_error("the disk is gone");
+                return std::make_unique<Player>(imu, scans);
+            });
+    };
+    const SessionOutcome failed = again("failed", true);
+    EXPECT_EQ(failed.failure, "");
+    EXPECT_FALSE(failed.undistorted_again);
+    EXPECT_FALSE(failed.interrupted);
+    EXPECT_GT(failed.map_points, 1000u);
+    EXPECT_EQ(warnings.count("no_second_pass"), 1u);
+    const SessionOutcome stopped = again("stopped", false);
+    EXPECT_FALSE(stopped.undistorted_again);
+    EXPECT_TRUE(stopped.interrupted && stopped.partly);
+    EXPECT_GT(stopped.map_points, 1000u);
+}
+
 TEST_F(SessionTest, NeverWritesOverTheMapItIsJoinedTo)
 {
     config.known_map = KnownMap{config.folder, false, {}};

@@ -105,6 +105,7 @@ TEST(ALoop, BetweenHallsOfOneShapeIsNeverBelieved)
         const Submap b = submapOf(hall(i + 20), alongHall, 0.5, 9, 2);
         const LoopClosure loop = judgeLoop(a, b, candidate({Matrix3d::Identity(), {0.5, 0, 0}}));
         believed += loop.verdict == Verdict::Pending;
+        RecordProperty("conflicts" + std::to_string(i), std::to_string(loop.evidence.conflicts));
     }
     EXPECT_EQ(believed, 0);
 }
@@ -118,6 +119,7 @@ TEST(ALoop, InOneHallIsBelieved)
         const LoopClosure loop = judgeLoop(a, b, candidate({Matrix3d::Identity(), {0.6, 0.1, 0}}));
         EXPECT_EQ(loop.verdict, Verdict::Pending) << loop.reason;
         EXPECT_EQ(loop.evidence.directions, 6);
+        RecordProperty("conflicts" + std::to_string(i), std::to_string(loop.evidence.conflicts));
     }
 }
 

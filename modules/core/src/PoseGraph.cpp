@@ -1,5 +1,6 @@
 #include "taut/core/PoseGraph.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 namespace taut
@@ -17,6 +18,15 @@ Vector6d rightErrorTo(const Pose& T, const Pose& other)
     Vector6d d;
     d << T.R.transpose() * (other.p - T.p), logSO3(T.R.transpose() * other.R);
     return d;
+}
+
+ShownDirections shownDirections(const Matrix6d& information)
+{
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information);
+    const double least = 1e-9 * eigen.eigenvalues().maxCoeff();
+    int open = 0;
+    while (open < 6 && eigen.eigenvalues()[open] <= least) open++;
+    return {eigen.eigenvectors().rightCols(6 - open), eigen.eigenvalues().tail(6 - open)};
 }
 
 std::ptrdiff_t PoseGraph::indexOf(VertexId id) const

@@ -35,10 +35,7 @@ Pose perturbed(const Pose& T, const Vector6d& delta)
 
 Vector6d relativeResidual(const Pose& T_from_to, const Pose& T_world_from, const Pose& T_world_to)
 {
-    const Pose gap = T_from_to.inverse() * (T_world_from.inverse() * T_world_to);
-    Vector6d r;
-    r << gap.p, logSO3(gap.R);
-    return r;
+    return rightErrorTo(T_from_to, T_world_from.inverse() * T_world_to);
 }
 
 RelativeLinearization linearizeRelative(

@@ -10,6 +10,7 @@
 
 #include "NormalEquations.h"
 #include "RobustWeights.h"
+#include "optimizeBy.h"
 #include "taut/graph/GraphResiduals.h"
 
 IMPLEMENTS_MRPT_OBJECT(SparseGraphOptimizer, taut::GraphOptimizer, taut)
@@ -103,6 +104,13 @@ class SparseProblem : public RobustProblem
     }
 
     const std::vector<Pose>& poses() const { return poses_; }
+
+    double gravityChi2(std::size_t k) const
+    {
+        const auto& e = graph_.gravity_edges[k];
+        const Vector3d r = gravityResidual(e.edge->up_submap, poses_[e.vertex].R);
+        return r.dot(e.edge->information * r);
+    }
     int iterations() const { return iterations_; }
 
  private:
@@ -223,34 +231,7 @@ void SparseGraphOptimizer::configure(ConfigSection& section)
 
 GraphReport SparseGraphOptimizer::optimize(PoseGraph& graph) const
 {
-    const IndexedGraph indexed(graph);
-    SparseProblem problem(indexed, config);
-    std::vector<double> weights = startingWeights(indexed);
-    GraphReport report;
-    report.initial_cost = problem.cost(weights);
-    report.converged = minimizeRobustly(problem, closuresOf(indexed), config.closures, weights);
-    problem.finish(weights);
-    report.final_cost = problem.cost(weights);
-    report.iterations = problem.iterations();
-
-    report.relative_chi2.resize(graph.relative_edges.size());
-    report.weights.resize(graph.relative_edges.size());
-    report.gravity_chi2.resize(graph.gravity_edges.size());
-    for (std::size_t e = 0; e < weights.size(); e++)
-    {
-        const std::size_t position = indexed.relative_edges[e].position;
-        report.relative_chi2[position] = problem.chi2(e);
-        report.weights[position] = weights[e];
-    }
-    for (const auto& e : indexed.gravity_edges)
-    {
-        const Vector3d r = gravityResidual(e.edge->up_submap, problem.poses()[e.vertex].R);
-        report.gravity_chi2[e.position] = r.dot(e.edge->information * r);
-    }
-    for (std::size_t v = 0; v < indexed.vertices.size(); v++)
-        if (!indexed.vertices[v]->fixed)
-            graph.vertices[indexed.positions[v]].T_world_submap = problem.poses()[v];
-    return report;
+    return optimizeBy<SparseProblem>(config, graph);
 }
 
 std::shared_ptr<const GraphCovariance> SparseGraphOptimizer::covariance(

@@ -7,7 +7,6 @@
 #include <Eigen/LU>
 
 #include "taut/core/format.h"
-#include "taut/loops/CommonView.h"
 #include "taut/loops/SubmapRegistration.h"
 
 namespace taut
@@ -20,6 +19,7 @@ constexpr double kFurthest = 6;       // [m] that starts are tried around a gues
 constexpr double kMostTurned = 0.4;   // [rad]
 constexpr std::size_t kGlance = 200;  // points that tell which starts are worth it
 constexpr std::size_t kBest = 3;      // starts that are followed
+constexpr double kMostTilted = 0.1;   // [rad] between what both take for up
 // Starts around a result that have to lead back to it.
 constexpr double kAside = 0.25;  // [m], and as far turned at the lever
 /** From -reach to reach about a step apart; 0 alone where the reach is within a step. */
@@ -159,86 +159,95 @@ LoopClosure LoopJudge::judge(
     loop.to = candidate.to;
     loop.T_from_to = candidate.T_from_to;
     loop.source = candidate.source;
-    const auto refuse = [&](const std::string& reason)
-    {
-        loop.verdict = Verdict::Refused;
-        loop.reason = reason;
-        return loop;
-    };
+    loop.reason = faultOf(candidate, from, to, loop);
+    loop.verdict = loop.reason.empty() ? Verdict::Pending : Verdict::Refused;
+    return loop;
+}
 
+std::string LoopJudge::faultOf(
+    const LoopCandidate& candidate, const SubmapView& from, const SubmapView& to,
+    LoopClosure& loop) const
+{
     const auto most = static_cast<std::size_t>(config_.points);
     const std::vector<MapPoint> of_from = mapPointsOf(*from.submap, most);
     const std::vector<MapPoint> of_to = mapPointsOf(*to.submap, most);
     SubmapRegistration on_from(*from.map, executor_), on_to(*to.map, executor_);
     const SubmapFit fit = bestFit(on_from, of_to, candidate);
-    if (!fit.converged) return refuse("the registration finds no fit");
+    if (!fit.converged) return "the registration finds no fit";
     loop.T_from_to = fit.T_from_to;
     loop.evidence.residual = fit.residual;
 
     // Gravity tells one from another that hangs upside down.
     const double tilt = std::acos(std::clamp(
         (fit.T_from_to.R * to.submap->up_submap).dot(from.submap->up_submap), -1.0, 1.0));
-    if (tilt > 0.1) return refuse(format("gravity: tilted by %.1f degrees", tilt * 180 / M_PI));
+    if (tilt > kMostTilted) return format("gravity: tilted by %.1f degrees", tilt * 180 / M_PI);
 
     // What both could see, each with the eyes of the other.
     const Pose T_to_from = fit.T_from_to.inverse();
-    const CommonView a = commonView(
-        of_to, fit.T_from_to,
-        visibilityOf(of_to, on_to.normalsOf(of_to), fit.T_from_to, *from.submap),
-        on_from.onSurface(of_to, fit.T_from_to));
-    const CommonView b = commonView(
-        of_from, T_to_from,
-        visibilityOf(of_from, on_from.normalsOf(of_from), T_to_from, *to.submap),
-        on_to.onSurface(of_from, T_to_from));
-    LoopEvidence& e = loop.evidence;
-    e.overlap = std::max(
-        static_cast<double>(a.points) / static_cast<double>(of_to.size()),
-        static_cast<double>(b.points) / static_cast<double>(of_from.size()));
-    e.cells = a.cells + b.cells;
-    const auto share = [](int part, int all)
-    { return all > 0 ? static_cast<double>(part) / all : 0; };
-    e.inliers = std::min(share(a.on_surface, a.points), share(b.on_surface, b.points));
-    e.conflicts = share(a.conflicts + b.conflicts, a.cells + b.cells);
-    if (e.overlap < config_.min_overlap || e.cells < config_.min_cells)
-        return refuse(format("overlap: %.0f %% in %d cells", 100 * e.overlap, e.cells));
-    if (e.inliers < config_.min_inliers)
-        return refuse(format("fit: %.0f %% of the common points on a surface", 100 * e.inliers));
-    if (e.conflicts >
-        (candidate.between_recordings ? config_.max_conflicts_between : config_.max_conflicts))
-        return refuse(format(
-            "free space: %.1f %% of the common cells lie where the other saw through",
-            100 * e.conflicts));
-    if (std::max(a.sectors, b.sectors) < config_.min_sectors)
-        return refuse(
-            format("overlap: on one side only, %d sectors of 8", std::max(a.sectors, b.sectors)));
+    const std::string conflict = conflictOf(
+        commonView(
+            of_to, fit.T_from_to,
+            visibilityOf(of_to, on_to.normalsOf(of_to), fit.T_from_to, *from.submap),
+            on_from.onSurface(of_to, fit.T_from_to)),
+        commonView(
+            of_from, T_to_from,
+            visibilityOf(of_from, on_from.normalsOf(of_from), T_to_from, *to.submap),
+            on_to.onSurface(of_from, T_to_from)),
+        {of_to.size(), of_from.size()},
+        candidate.between_recordings ? config_.max_conflicts_between : config_.max_conflicts,
+        loop.evidence);
+    if (!conflict.empty()) return conflict;
 
     const Extent extent = extentOf(of_to);
     const PoseDirections seen = directionsOf(fit.hessian, extent);
-    loop.information = informationOf(seen, config_, e.directions);
-    if (e.directions < config_.min_directions)
-        return refuse(format("degenerate: only %d of 6 directions are seen", e.directions));
+    loop.information = informationOf(seen, config_, loop.evidence.directions);
+    if (loop.evidence.directions < config_.min_directions)
+        return format("degenerate: only %d of 6 directions are seen", loop.evidence.directions);
 
     // The other way round, and from beside: where the overlap shows it, the same pose.
     Difference difference;
     const SubmapFit back = on_to.align(of_from, T_to_from, kReach / 2);
-    if (!back.converged) return refuse("the registration the other way finds no fit");
+    if (!back.converged) return "the registration the other way finds no fit";
     difference.include(seen, fit.T_from_to, back.T_from_to.inverse());
     for (const double side : {-1.0, 1.0})
     {
         const Pose aside = movedAside(
             fit.T_from_to, extent, {side * kAside, kAside, 0}, side * kAside / extent.lever);
         const SubmapFit again = on_from.align(of_to, aside, kReach);
-        if (!again.converged) return refuse("another start finds no fit");
+        if (!again.converged) return "another start finds no fit";
         difference.include(seen, fit.T_from_to, again.T_from_to);
     }
-    e.disagreement = difference.position;
+    loop.evidence.disagreement = difference.position;
     if (difference.position > config_.max_disagreement ||
         difference.angle > config_.max_angle_disagreement)
-        return refuse(format(
+        return format(
             "disagreement: registrations differ by %.0f mm and %.2f degrees",
-            1e3 * difference.position, difference.angle * 180 / M_PI));
+            1e3 * difference.position, difference.angle * 180 / M_PI);
+    return "";
+}
 
-    loop.verdict = Verdict::Pending;
-    return loop;
+std::string LoopJudge::conflictOf(
+    const CommonView& a, const CommonView& b, const std::array<std::size_t, 2>& points,
+    double max_conflicts, LoopEvidence& e) const
+{
+    const auto share = [](double part, double all) { return all > 0 ? part / all : 0; };
+    e.overlap = std::max(
+        share(a.points, static_cast<double>(points[0])),
+        share(b.points, static_cast<double>(points[1])));
+    e.cells = a.cells + b.cells;
+    e.inliers = std::min(share(a.on_surface, a.points), share(b.on_surface, b.points));
+    e.conflicts = share(a.conflicts + b.conflicts, e.cells);
+    const int sectors = std::max(a.sectors, b.sectors);
+    if (e.overlap < config_.min_overlap || e.cells < config_.min_cells)
+        return format("overlap: %.0f %% in %d cells", 100 * e.overlap, e.cells);
+    if (e.inliers < config_.min_inliers)
+        return format("fit: %.0f %% of the common points on a surface", 100 * e.inliers);
+    if (e.conflicts > max_conflicts)
+        return format(
+            "free space: %.1f %% of the common cells lie where the other saw through",
+            100 * e.conflicts);
+    if (sectors < config_.min_sectors)
+        return format("overlap: on one side only, %d sectors of 8", sectors);
+    return "";
 }
 }  // namespace taut

@@ -61,17 +61,13 @@ std::vector<LoopCandidate> NearbyPlaces::candidates(
             [](const Place& p, VertexId i) { return p.id < i; });
     };
     const auto to = find(id);
-    const auto poseOf = [&](VertexId i) -> const Pose&
-    {
-        return knowledge.graph.vertices[static_cast<std::size_t>(knowledge.graph.indexOf(i))]
-            .T_world_submap;
-    };
+    const Pose T_world_to = knowledge.pose(id);
     std::vector<std::pair<double, LoopCandidate>> ranked;
     for (auto from = places_.begin(); from != to; ++from)
     {
         const double reach = std::max(from->reach, to->reach);
         if (to->path_begin - from->path_end < config.min_way * reach) continue;
-        const Pose T_from_to = poseOf(from->id).inverse() * poseOf(id);
+        const Pose T_from_to = knowledge.pose(from->id).inverse() * T_world_to;
         const double apart = distance(*from, *to, T_from_to);
         if (apart > config.max_distance) continue;
         const std::optional<Matrix6d> covariance = knowledge.covariance(from->id, id);

@@ -28,6 +28,7 @@ constexpr Duration kLookahead = 2'000'000'000;     // in it the sensors must sho
 constexpr std::size_t kLookaheadCount = 20'000;    // whatever the stamps say
 constexpr std::size_t kLookaheadBytes = 1u << 28;  // likewise
 constexpr Duration kDisorder = 1'000'000'000;      // between sensors, in the order of the file
+constexpr Duration kLongestScan = 400'000'000;     // [ns] the IMU covers one that begins at the end
 constexpr Duration kLargestOverlap = 20'000'000;   // of sweeps that follow each other
 constexpr double kWorstBadShare = 0.05;            // of the points of a scan
 
@@ -277,7 +278,7 @@ std::optional<Measurement> RawlogSource::Impl::convertImu(const CObservationIMU&
         skip(sample.t, "imu_invalid", "an IMU sample has values that are not finite");
         return {};
     }
-    if (!checkImuTime(sample.t)) return {};
+    if (!checkImuTime(sample.t) || sample.t - kLongestScan > end) return {};
     if (const auto doubt = unit_check.add(sample)) warn(sample.t, "imu_units", *doubt);
     progress.imu_samples++;
     return sample;

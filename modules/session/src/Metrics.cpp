@@ -36,6 +36,20 @@ double megabytes(std::size_t kilobytes)
 {
     return static_cast<double>(kilobytes) / 1024;
 }
+nlohmann::ordered_json slamOf(const Metrics::Summary& s)
+{
+    return {
+        {"submaps", s.submaps},
+        {"loops_judged", s.loops_judged},
+        {"loops_accepted", s.loops_accepted},
+        {"loops_pending", s.loops_pending},
+        {"loops_withdrawn", s.loops_withdrawn},
+        {"path_corrected", s.path_corrected},
+        {"undistorted_again", s.second_pass},
+        {"drift_scale", s.drift_scale},
+        {"seconds", s.slam_seconds},
+        {"second_pass_s", s.second_pass_seconds}};
+}
 }  // namespace
 
 std::size_t residentMemory(bool peak)
@@ -110,18 +124,7 @@ std::string Metrics::json(const Summary& s, const WarningLog& warnings) const
         {"window_cells", s.map_cells},
         {"key_scans", s.key_scans},
         {"occupancy_resolution_m", s.occupancy_resolution}};
-    if (s.with_slam)
-        j["slam"] = {
-            {"submaps", s.submaps},
-            {"loops_judged", s.loops_judged},
-            {"loops_accepted", s.loops_accepted},
-            {"loops_pending", s.loops_pending},
-            {"loops_withdrawn", s.loops_withdrawn},
-            {"path_corrected", s.path_corrected},
-            {"undistorted_again", s.second_pass},
-            {"drift_scale", s.drift_scale},
-            {"seconds", s.slam_seconds},
-            {"second_pass_s", s.second_pass_seconds}};
+    if (s.with_slam) j["slam"] = slamOf(s);
     j["frames"] =
         "trajectory: pose of the IMU body in the world (z up, origin at the first state), at the "
         "end "

@@ -65,14 +65,20 @@ bool isMarked(const fs::path& folder)
     return text.find("\"taut-slam\"") != std::string::npos;
 }
 
-void removeResults(const fs::path& folder)
+void removeSubmaps(const fs::path& folder)
 {
-    for (const char* name : kResults) fs::remove(folder / name);
     if (!fs::is_directory(fs::symlink_status(folder / "submaps"))) return;
     for (const auto& entry : fs::directory_iterator(folder / "submaps"))
         if (isSubmapFile(entry.path())) fs::remove(entry.path());
 }
 }  // namespace
+
+void removeLoopResults(const std::string& folder)
+{
+    for (const char* name : {"trajectory_odometry.tum", "graph.g2o", "loops.csv", "map.simplemap"})
+        fs::remove(fs::path(folder) / name);
+    removeSubmaps(folder);
+}
 
 void prepareResultFolder(
     const std::string& folder_name, bool overwrite, const std::vector<std::string>& inputs)
@@ -92,7 +98,11 @@ void prepareResultFolder(
             throw FolderInUse("'" + folder_name + "' holds results already; -w overwrites them");
     }
     fs::create_directories(folder);
-    if (isMarked(folder)) removeResults(folder);
+    if (isMarked(folder))
+    {
+        for (const char* name : kResults) fs::remove(folder / name);
+        removeSubmaps(folder);
+    }
     std::ofstream marker(folder / kMarker);
     marker << "Results of taut-slam, which `taut-slam -w` removes.\n";
     if (!marker) throw std::runtime_error("cannot write to '" + folder_name + "'");

@@ -8,6 +8,7 @@
 
 #include "taut/core/format.h"
 #include "taut/graph/G2oFile.h"
+#include "taut/session/ResultFolder.h"
 #include "taut/slam/LoopsFile.h"
 #include "taut/slam/SimpleMapFile.h"
 
@@ -23,18 +24,6 @@ void writeText(const fs::path& path, const std::string& text)
     file << text;
     file.close();
     if (!file) throw std::runtime_error("cannot write '" + path.string() + "'");
-}
-
-/** Of the run before in the same folder: nothing of two runs is mixed. */
-void removeSlamFiles(const std::string& folder)
-{
-    for (const char* name : {"trajectory_odometry.tum", "graph.g2o", "loops.csv", "map.simplemap"})
-        fs::remove(fs::path(folder) / name);
-    const fs::path submaps = fs::path(folder) / "submaps";
-    if (!fs::is_directory(submaps)) return;
-    for (const auto& entry : fs::directory_iterator(submaps))
-        if (entry.path().extension() == ".tsm" || entry.path().extension() == ".ply")
-            fs::remove(entry.path());
 }
 
 double secondsSince(std::chrono::steady_clock::time_point begin)
@@ -67,7 +56,7 @@ Session::Session(const SessionConfig& config, WarningLog& warnings, EventSink ev
         writeText(rig, config_.rig);
     if (config_.known_map && fs::equivalent(config_.known_map->folder, config_.folder))
         throw std::runtime_error("the results would overwrite the map that they are joined to");
-    removeSlamFiles(config_.folder);
+    removeLoopResults(config_.folder);
     if (config_.method.slam.loops)
     {
         mapper_ = std::make_unique<Mapper>(
@@ -192,6 +181,8 @@ SessionOutcome Session::finish(const StreamProgress& log, bool incomplete, bool 
     {
         outcome.failure = e.what();
     }
+    interrupted |= interrupted_again_;
+    outcome.interrupted = interrupted;
     outcome.poses = path_->poses();
     outcome.pictures_failed = config_.pictures && outcome.poses > 0 && !drawPictures();
     writeMetrics(log, incomplete, interrupted);
@@ -249,9 +240,7 @@ void Session::rewriteAlong(const std::vector<StampedPose>& path)
     };
     std::unique_ptr<MapExport> map = anew();
     second_pass_ = true;
-    if (reopen_)
-        undistorted_again_ = undistortAgain(
-            *reopen_(), config_.method.odometry, corrected(records_, poses), *map, go_on_);
+    undistorted_again_ = reopen_ && streamAgain(corrected(records_, poses), *map);
     if (!undistorted_again_)
     {
         map = anew();
@@ -262,6 +251,24 @@ void Session::rewriteAlong(const std::vector<StampedPose>& path)
         fs::rename(beside / name, folder / name);
     fs::remove(beside);
     map_ = std::move(map);
+}
+
+bool Session::streamAgain(const std::vector<SweepRecord>& records, MapExport& map)
+{
+    try
+    {
+        const bool whole =
+            undistortAgain(*reopen_(), config_.method.odometry, records, map, go_on_);
+        interrupted_again_ = !whole;
+        return whole;
+    }
+    catch (const std::exception& e)
+    {
+        warnings_.add(
+            {0, "no_second_pass",
+             std::string("the points of the submaps are moved instead: ") + e.what()});
+        return false;
+    }
 }
 
 bool Session::usedPartly(const StreamProgress& log, bool incomplete) const

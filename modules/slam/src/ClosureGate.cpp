@@ -1,7 +1,6 @@
 #include "taut/slam/ClosureGate.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 namespace taut
@@ -35,15 +34,13 @@ bool GapTest::isWithin(double share_beyond) const
 
 GapTest testGap(const Vector6d& gap, const Matrix6d& covariance, const Matrix6d& information)
 {
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information);
-    const double least = 1e-9 * eigen.eigenvalues().maxCoeff();
+    const ShownDirections shown = shownDirections(information);
     GapTest test;
-    for (int i = 0; i < 6; i++) test.directions += eigen.eigenvalues()[i] > least;
+    test.directions = static_cast<int>(shown.information.size());
     if (test.directions == 0) return test;
-    const auto shown = eigen.eigenvectors().rightCols(test.directions);
-    const Eigen::VectorXd seen = shown.transpose() * gap;
-    Eigen::MatrixXd of_gap = shown.transpose() * covariance * shown;
-    of_gap.diagonal() += eigen.eigenvalues().tail(test.directions).cwiseInverse();
+    const Eigen::VectorXd seen = shown.basis.transpose() * gap;
+    Eigen::MatrixXd of_gap = shown.basis.transpose() * covariance * shown.basis;
+    of_gap.diagonal() += shown.information.cwiseInverse();
     test.chi2 = seen.dot(of_gap.ldlt().solve(seen));
     return test;
 }

@@ -1,7 +1,6 @@
 #include "taut/slam/DriftScale.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -31,15 +30,10 @@ struct SeenGap
 
 SeenGap seenGap(const ClosedGap& g)
 {
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(g.information);
-    const double least = 1e-9 * eigen.eigenvalues().maxCoeff();
-    int open = 0;
-    while (open < 6 && eigen.eigenvalues()[open] <= least) open++;
-    const Eigen::MatrixXd shown = eigen.eigenvectors().rightCols(6 - open);
-    const Eigen::VectorXd variances = eigen.eigenvalues().tail(6 - open).cwiseInverse();
+    const ShownDirections shown = shownDirections(g.information);
     return {
-        shown.transpose() * g.gap, shown.transpose() * g.of_odometry * shown,
-        Eigen::MatrixXd(variances.asDiagonal())};
+        shown.basis.transpose() * g.gap, shown.basis.transpose() * g.of_odometry * shown.basis,
+        Eigen::MatrixXd(shown.information.cwiseInverse().asDiagonal())};
 }
 }  // namespace
 

@@ -1,6 +1,6 @@
 #include "taut/slam/LoopScores.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -77,23 +77,16 @@ LoopError errorOf(const RelativeEdge& loop, const Pose& T_true, const Vector3d& 
 {
     Matrix6d to_origin = Matrix6d::Identity();
     to_origin.topRightCorner<3, 3>() = hat(at);
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(
-        to_origin.transpose() * loop.information * to_origin);
+    const ShownDirections directions =
+        shownDirections(to_origin.transpose() * loop.information * to_origin);
     const Vector6d there = to_origin.inverse() * rightErrorTo(loop.T_from_to, T_true);
-    const Vector6d along = eigen.eigenvectors().transpose() * there;
-    const double least = 1e-9 * eigen.eigenvalues().maxCoeff();
-    Vector6d shown = Vector6d::Zero();
+    const Eigen::VectorXd along = directions.basis.transpose() * there;
+    const Vector6d shown = directions.basis * along;
+    const Eigen::VectorXd chi2 = directions.information.cwiseProduct(along.cwiseAbs2());
     LoopError error;
-    for (int i = 0; i < 6; i++)
-    {
-        const double information = eigen.eigenvalues()[i];
-        if (information <= least) continue;
-        shown += along[i] * eigen.eigenvectors().col(i);
-        const double chi2 = information * square(along[i]);
-        error.chi2 += chi2;
-        error.directions++;
-        error.beyond_deviations |= chi2 > square(kDeviations);
-    }
+    error.chi2 = chi2.sum();
+    error.directions = static_cast<int>(chi2.size());
+    error.beyond_deviations = (chi2.array() > square(kDeviations)).any();
     error.position = shown.head<3>().norm();
     error.angle = shown.tail<3>().norm();
     return error;

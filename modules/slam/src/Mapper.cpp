@@ -1,7 +1,6 @@
 #include "taut/slam/Mapper.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -53,6 +52,15 @@ class Watch
     std::chrono::steady_clock::time_point begin_;
 };
 
+/** Of a vertex that is there; ids ascend in the graphs here. */
+const Pose& poseIn(const PoseGraph& graph, VertexId id)
+{
+    return std::lower_bound(
+               graph.vertices.begin(), graph.vertices.end(), id,
+               [](const GraphVertex& v, VertexId wanted) { return v.id < wanted; })
+        ->T_world_submap;
+}
+
 /** Where the odometry has the next submap. */
 Pose nextInFrameOf(const Submap& submap, const Submap& next)
 {
@@ -63,12 +71,10 @@ Pose nextInFrameOf(const Submap& submap, const Submap& next)
 Matrix6d covarianceOfLoop(const LoopClosure& loop)
 {
     constexpr double kAnywhere = 1e4;  // [m^2]
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(loop.information);
-    const double least = 1e-9 * eigen.eigenvalues().maxCoeff();
-    Vector6d variances;
-    for (int i = 0; i < 6; i++)
-        variances[i] = eigen.eigenvalues()[i] > least ? 1 / eigen.eigenvalues()[i] : kAnywhere;
-    return eigen.eigenvectors() * variances.asDiagonal() * eigen.eigenvectors().transpose();
+    const ShownDirections shown = shownDirections(loop.information);
+    const Matrix6d open = Matrix6d::Identity() - shown.basis * shown.basis.transpose();
+    return shown.basis * shown.information.cwiseInverse().asDiagonal() * shown.basis.transpose() +
+           kAnywhere * open;
 }
 
 RelativeEdge odometryEdge(const Submap& from, const Submap& to)
@@ -102,6 +108,9 @@ Mapper::Mapper(const SlamConfig& config, std::string folder, Executor& executor,
 void Mapper::use(const KnownMap& map)
 {
     const PoseGraph known = readG2o((fs::path(map.folder) / "graph.g2o").string());
+    const auto ascending = [](const GraphVertex& a, const GraphVertex& b) { return a.id < b.id; };
+    if (!std::is_sorted(known.vertices.begin(), known.vertices.end(), ascending))
+        throw std::runtime_error("the map in '" + map.folder + "' is none of taut's");
     if (known.vertices.empty())
         throw std::runtime_error("the map in '" + map.folder + "' has no submaps");
     const std::string submaps = (fs::path(map.folder) / "submaps").string();
@@ -185,13 +194,16 @@ void Mapper::finish()
                  "' was recognised: the results are in a frame of their own"});
     for (LoopClosure& loop : loops_)
         if (loop.verdict == Verdict::Pending)
-            loop.reason = format(
-                "the gap is unlikely (chi2 %.0f) and no second loop agrees", loop.evidence.chi2);
+            loop.reason = isApart() && !isOwn(loop.from)
+                              ? "too few places of the map agree, or others say as much"
+                              : format(
+                                    "the gap is unlikely (chi2 %.0f) and no second loop agrees",
+                                    loop.evidence.chi2);
 }
 
 const Pose& Mapper::poseOf(VertexId id) const
 {
-    return graph_.vertices[static_cast<std::size_t>(graph_.indexOf(id))].T_world_submap;
+    return poseIn(graph_, id);
 }
 
 Pose Mapper::between(VertexId from, VertexId to) const
@@ -234,7 +246,8 @@ std::optional<Matrix6d> Mapper::covarianceOf(VertexId from, VertexId to)
 void Mapper::searchFor(VertexId id, const PlaceRecognizer& recognizer)
 {
     const PlaceKnowledge knowledge{
-        graph_, [this](VertexId from, VertexId to) { return covarianceOf(from, to); }};
+        [this](VertexId submap) { return poseOf(submap); },
+        [this](VertexId from, VertexId to) { return covarianceOf(from, to); }};
     for (LoopCandidate candidate : recognizer.candidates(id, knowledge))
     {
         if (!isOwn(candidate.to)) continue;
@@ -371,16 +384,19 @@ void Mapper::weighJoints(bool at_the_end)
 
 void Mapper::join(const Joints& joints)
 {
+    const PoseGraph apart = graph_;
+    const std::size_t accepted = accepted_;
     for (std::size_t i = first_own_; i < graph_.vertices.size(); i++)
     {
         GraphVertex& vertex = graph_.vertices[i];
         vertex.T_world_submap = joints.T_map_run * vertex.T_world_submap;
         vertex.fixed = false;
     }
-    joined_ = true;
     covariance_.reset();
     for (const std::size_t i : joints.loops)
         accept(loops_[i], format("%zu places of the map agree", joints.loops.size()));
+    joined_ = accepted_ > accepted;
+    if (!joined_) graph_ = apart;
 }
 
 PoseGraph Mapper::resultGraph() const
@@ -453,14 +469,13 @@ std::vector<ClosedGap> Mapper::gapsOf(const PoseGraph& odometry) const
 {
     std::vector<ClosedGap> gaps;
     std::shared_ptr<const GraphCovariance> covariance;
-    const auto at = [&](VertexId id) -> const Pose&
-    { return odometry.vertices[static_cast<std::size_t>(odometry.indexOf(id))].T_world_submap; };
     for (const LoopClosure& loop : loops_)
     {
         if (loop.verdict != Verdict::Accepted || !isOwn(loop.from)) continue;
         if (!covariance) covariance = optimizer_->covariance(odometry, {});
         gaps.push_back(
-            {rightErrorTo(at(loop.from).inverse() * at(loop.to), loop.T_from_to),
+            {rightErrorTo(
+                 poseIn(odometry, loop.from).inverse() * poseIn(odometry, loop.to), loop.T_from_to),
              covariance->relative(loop.from, loop.to) / drift_scale_, loop.information});
     }
     return gaps;

@@ -15,7 +15,7 @@ namespace taut
 /** What is known of where submaps are to each other when candidates are asked for. */
 struct PlaceKnowledge
 {
-    const PoseGraph& graph;
+    std::function<Pose(VertexId)> pose;  //!< T_world_submap as the graph has it
     /** Covariance of T_from_to as the graph has it, in the tangent of RelativeEdge; nothing where
      * no edges join the two. */
     std::function<std::optional<Matrix6d>(VertexId from, VertexId to)> covariance;

@@ -23,6 +23,14 @@ Matrix6d rightFromLeft(const Pose& T);
 /** The error d' = (p, theta) with T Exp(d') = other, as above. */
 Vector6d rightErrorTo(const Pose& T, const Pose& other);
 
+/** The directions of which an information matrix says anything, as far as rounding lets tell. */
+struct ShownDirections
+{
+    Eigen::Matrix<double, 6, Eigen::Dynamic> basis;  //!< orthonormal columns
+    Eigen::VectorXd information;                     //!< along each, ascending
+};
+ShownDirections shownDirections(const Matrix6d& information);
+
 /** The pose of a submap. */
 struct GraphVertex
 {

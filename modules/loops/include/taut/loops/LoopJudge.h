@@ -1,11 +1,14 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <string>
 
 #include "taut/core/Config.h"
 #include "taut/core/LoopClosure.h"
 #include "taut/core/Map.h"
 #include "taut/core/Submap.h"
+#include "taut/loops/CommonView.h"
 
 namespace taut
 {
@@ -50,6 +53,15 @@ class LoopJudge
         const LoopCandidate& candidate, const SubmapView& from, const SubmapView& to) const;
 
  private:
+    /** What speaks against it; empty: nothing. Fills the evidence as far as it got. */
+    std::string faultOf(
+        const LoopCandidate& candidate, const SubmapView& from, const SubmapView& to,
+        LoopClosure& loop) const;
+    /** The same of what both saw: `a` by the points of `to`, `b` by those of `from`. */
+    std::string conflictOf(
+        const CommonView& a, const CommonView& b, const std::array<std::size_t, 2>& points,
+        double max_conflicts, LoopEvidence& evidence) const;
+
     LoopJudgeConfig config_;
     Executor& executor_;
 };

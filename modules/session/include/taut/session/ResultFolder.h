@@ -12,6 +12,9 @@ struct FolderInUse : std::runtime_error
     using std::runtime_error::runtime_error;
 };
 
+/** Removes what the loops of an earlier run left: nothing of two runs is mixed. */
+void removeLoopResults(const std::string& folder);
+
 /** Makes a folder ready for the results of a run: creates it, or, where it holds results of taut
  * and `overwrite` says so, removes these and nothing else. A file `.taut-results` in the folder
  * tells that its results are taut's.

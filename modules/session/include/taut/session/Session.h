@@ -91,6 +91,7 @@ class Session
     void take(const Event& event);
     void takeRefined(const Refined& refined);
     void closeLoops();
+    bool streamAgain(const std::vector<SweepRecord>& records, MapExport& map);
     void rewriteAlong(const std::vector<StampedPose>& path);
     std::string processAll(
         MeasurementStream& log, const std::function<bool(double)>& go_on, bool& interrupted);
@@ -113,7 +114,7 @@ class Session
     NavState::Matrix covariance_ = NavState::Matrix::Zero();  // of the last estimate
     Reopen reopen_;
     std::function<bool(double)> go_on_;
-    bool second_pass_ = false, undistorted_again_ = false;
+    bool second_pass_ = false, undistorted_again_ = false, interrupted_again_ = false;
     double second_pass_seconds_ = 0;
     Pipeline pipeline_;
     double wall_seconds_ = 0;
