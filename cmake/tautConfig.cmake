@@ -1,10 +1,26 @@
-# find_package(taut): targets taut::core (all that a plug-in needs) and one more for each module.
+# find_package(taut [COMPONENTS core ...]): targets taut::core (all that a plug-in needs) and one
+# more for each module. The OctoMap headers are looked for only where another module than core is
+# asked for.
 include(CMakeFindDependencyMacro)
 find_dependency(Threads)
 find_dependency(Eigen3 3.4)
 foreach(lib core rtti)
   find_dependency(mrpt-${lib} 2.5)
 endforeach()
-find_dependency(octomap 1.9)
 find_dependency(tsl-robin-map 1.2)
+set(taut_other_modules ${taut_FIND_COMPONENTS})
+list(REMOVE_ITEM taut_other_modules core)
+if(taut_other_modules)
+  find_dependency(octomap 1.9)
+endif()
 include(${CMAKE_CURRENT_LIST_DIR}/tautTargets.cmake)
+set(taut_missing "")
+foreach(module ${taut_FIND_COMPONENTS})
+  if(NOT TARGET taut::${module})
+    list(APPEND taut_missing ${module})
+  endif()
+endforeach()
+if(taut_missing)
+  set(taut_FOUND FALSE)
+  set(taut_NOT_FOUND_MESSAGE "taut has no module ${taut_missing}")
+endif()

@@ -182,7 +182,7 @@ TEST(OctreeMap, LearnsTheNoiseFromWhatIsInserted)
     // the noise does not look at them.
     OctreeMap mature, young;
     Random random(6);
-    for (OctreeMap* map : {&mature, &young}) map->config.ripe_points = 1e9;
+    for (OctreeMap* map : {&mature, &young}) map->config.dense_points = 1e9;
     std::vector<MapPoint> all;
     for (int scan = 0; scan < 60; scan++)
     {
@@ -335,11 +335,11 @@ TEST(OctreeMap, LearnsASurfaceThatIsSeenMoreOften)
     EXPECT_GT(known(), 95);
 }
 
-TEST(OctreeMap, ARipeSurfaceIsFollowedByAShareOfItsPoints)
+TEST(OctreeMap, ADenseSurfaceIsFollowedByAShareOfItsPoints)
 {
     // A floor that sinks by 1 cm: the mean of all that was seen, however few points are taken.
     OctreeMap all, share;
-    all.config.ripe_points = 1e9;
+    all.config.dense_points = 1e9;
     for (OctreeMap* map : {&all, &share})
     {
         see(*map, floorAt(1.01, 0.01), 20, 1);

@@ -23,17 +23,17 @@ struct FilledTree
 
     void add(const Eigen::Vector3d& p) { add(std::vector{p}); }
 
-    /** Gives the way of a point in each ripe node. */
+    /** Gives the way of a point in each dense node. */
     std::vector<std::uint64_t> add(
         const std::vector<Eigen::Vector3d>& points, int threads = 1,
-        const StatisticsTree::Ripeness& ripeness = {})
+        const StatisticsTree::DenseRule& dense_rule = {})
     {
         StatisticsTree::Entries entries;
         for (std::uint32_t i = 0; i < points.size(); i++)
-            entries.push_back({StatisticsTree::wayTo(keyOf(points[i])), i});
+            entries.push_back({StatisticsTree::mortonOf(keyOf(points[i])), i});
         Executor executor(threads);
         return tree.add(
-            entries, from_depth, ripeness,
+            entries, from_depth, dense_rule,
             [&](const StatisticsTree::Entry& e, PointStatistics& sum) { sum.add(points[e.index]); },
             executor);
     }
@@ -142,7 +142,7 @@ TEST(StatisticsTree, AWayLeadsBackToItsLeaf)
         const octomap::OcTreeKey key(
             static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(0xffff - i),
             static_cast<std::uint16_t>(i * 31));
-        EXPECT_EQ(StatisticsTree::endOf(StatisticsTree::wayTo(key)), key);
+        EXPECT_EQ(StatisticsTree::keyOf(StatisticsTree::mortonOf(key)), key);
     }
 }
 
@@ -193,7 +193,7 @@ TEST(StatisticsTree, ManyNodesApproachedTogetherAreTheSameAsOneAfterTheOther)
     }
 }
 
-TEST(StatisticsTree, TellsWhichNodesAreRipe)
+TEST(StatisticsTree, TellsWhichNodesAreDense)
 {
     FilledTree filled;
     Random random(8);
@@ -204,16 +204,16 @@ TEST(StatisticsTree, TellsWhichNodesAreRipe)
     for (int i = 0; i < 300; i++) points.push_back(there + random.vector(2));
     for (int round = 0; round < 2; round++)
     {
-        std::vector<const StatisticsNode*> ripe;
-        for (const std::uint64_t way : filled.add(points, 2, {depth, 100}))
-            ripe.push_back(filled.tree.find(StatisticsTree::endOf(way), depth));
+        std::vector<const StatisticsNode*> dense;
+        for (const std::uint64_t morton : filled.add(points, 2, {depth, 100}))
+            dense.push_back(filled.tree.find(StatisticsTree::keyOf(morton), depth));
         for (const auto& p : points)
         {
             const StatisticsNode* node = filled.find(p, depth);
-            const auto told = std::count(ripe.begin(), ripe.end(), node);
+            const auto told = std::count(dense.begin(), dense.end(), node);
             EXPECT_EQ(told, node->statistics().count >= 100 ? 1 : 0);
         }
-        EXPECT_GT(ripe.size(), 0u);
+        EXPECT_GT(dense.size(), 0u);
     }
 }
 

@@ -119,14 +119,14 @@ TEST_F(PoseSearchTest, FindsWhereAScanWasSeen)
     ASSERT_EQ(best.size(), 5u);
     EXPECT_LT(nearest(best, truth), 0.8);
     for (std::size_t i = 1; i < best.size(); i++)
-        EXPECT_GE(search.explained(best[i - 1]), search.explained(best[i]));
+        EXPECT_GE(search.inlierWeight(best[i - 1]), search.inlierWeight(best[i]));
     const Pose turned{expSO3({0, 0, 0.4}) * truth.R, truth.p};
-    EXPECT_GT(search.explained(truth), 1.3 * search.explained(turned));
+    EXPECT_GT(search.inlierWeight(truth), 1.3 * search.inlierWeight(turned));
 }
 
 TEST_F(PoseSearchTest, NothingIsExplainedWhereThereIsNoMap)
 {
     PoseSearch search(seen, map, executor);
-    EXPECT_EQ(search.explained({truth.R, truth.p + Vector3d(500, 0, 0)}), 0);
-    EXPECT_EQ(PoseSearch({}, map, executor).explained(truth), 0);
+    EXPECT_EQ(search.inlierWeight({truth.R, truth.p + Vector3d(500, 0, 0)}), 0);
+    EXPECT_EQ(PoseSearch({}, map, executor).inlierWeight(truth), 0);
 }

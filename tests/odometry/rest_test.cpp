@@ -17,7 +17,7 @@ class RestTest : public testing::Test
     RestTest()
     {
         initialization.rest_duration = 2;
-        initialization.sway = 0.004;
+        initialization.position_sigma = 0.004;
         NavState& x = initialization.estimate.state;
         x.t = 5 * kSecond;
         x.T_world_imu = {expSO3({0.1, -0.2, 0.3}), {1, 2, 3}};
@@ -53,32 +53,33 @@ class RestTest : public testing::Test
     const NavState::Matrix known = covarianceOfVelocity(1e-3);
 };
 
-bool says(const RestPrior& prior)
+bool says(const MotionPrior& prior)
 {
-    return std::isfinite(prior.sway);
+    return std::isfinite(prior.position_sigma);
 }
 }  // namespace
 
 TEST_F(RestTest, HoldsThePoseWhileItLasts)
 {
     Rest rest(initialization, config);
-    const RestPrior prior = rest.at(after(1), known, 0.01);
+    const MotionPrior prior = rest.at(after(1), known, 0.01);
     EXPECT_EQ(prior.T_world_imu.p, Vector3d(1, 2, 3));
-    EXPECT_EQ(prior.sway, 0.004);
-    EXPECT_DOUBLE_EQ(prior.turn, 0.004 / config.sway_lever);
-    EXPECT_TRUE(std::isinf(prior.speed));
+    EXPECT_EQ(prior.position_sigma, 0.004);
+    EXPECT_DOUBLE_EQ(prior.rotation_sigma, 0.004 / config.sway_lever);
+    EXPECT_TRUE(std::isinf(prior.velocity_sigma));
 }
 
 TEST_F(RestTest, AfterItABodyIsAsFarAwayAsItHasTurnedAndAsFastAsItTurns)
 {
     Rest rest(initialization, config);
-    const RestPrior still = rest.at(after(2.1), known, 0);
-    EXPECT_EQ(still.sway, config.max_sway);
-    EXPECT_TRUE(std::isinf(still.turn));
-    const RestPrior turned = rest.at(after(4, {0, 0.3, 0}), known, 0.15);
-    EXPECT_NEAR(turned.sway, 0.3 * config.sway_lever, 1e-12);
-    EXPECT_NEAR(turned.speed, 0.15 * config.sway_lever, 1e-12);
-    EXPECT_EQ(rest.at(after(5), known, 0.15).sway, turned.sway) << "it may come back another way";
+    const MotionPrior still = rest.at(after(2.1), known, 0);
+    EXPECT_EQ(still.position_sigma, config.max_sway);
+    EXPECT_TRUE(std::isinf(still.rotation_sigma));
+    const MotionPrior turned = rest.at(after(4, {0, 0.3, 0}), known, 0.15);
+    EXPECT_NEAR(turned.position_sigma, 0.3 * config.sway_lever, 1e-12);
+    EXPECT_NEAR(turned.velocity_sigma, 0.15 * config.sway_lever, 1e-12);
+    EXPECT_EQ(rest.at(after(5), known, 0.15).position_sigma, turned.position_sigma)
+        << "it may come back another way";
 }
 
 TEST_F(RestTest, EndsWhereTheImuTellsOfASpeedThatNoTurnExplains)
@@ -111,7 +112,7 @@ TEST_F(RestTest, EndsWhereTheLidarSeesItLeft)
     for (const double seconds : {1.0, 3.0})
     {
         Rest rest(initialization, config);
-        const double sway = rest.at(after(seconds), known, 0).sway;
+        const double sway = rest.at(after(seconds), known, 0).position_sigma;
         NavState there = after(seconds);
         there.T_world_imu.p.x() += 3.9 * sway;
         EXPECT_FALSE(rest.endIfLeft(there, tellsAlongX(1e-4)));

@@ -160,7 +160,8 @@ TEST_P(AnyScanProblem, GradientIsThatOfTheCostInAnyChart)
     for (const double size : {0.0, 0.03, 0.2})
     {
         if (size == 0.03)
-            problem.setRest({{expSO3({0.1, -0.3, 0.2}), {1, 2, 3}}, 0.02, 0.05, 0.3, {1, -2, 0.5}});
+            problem.setMotionPrior(
+                {{expSO3({0.1, -0.3, 0.2}), {1, 2, 3}}, 0.02, 0.05, 0.3, {1, -2, 0.5}});
         problem.retract(randomStep(random, problem.dimension(), 0.02));
         const ProblemVector z = randomStep(random, problem.dimension(), size);
         const Eigen::VectorXd found = chartGradient(problem, z);
@@ -338,7 +339,7 @@ TEST(ScanProblem, ABodyAtRestIsKnownToBeWhereItWas)
     constexpr double sway = 0.003, turn = 0.002, speed = 0.01;
     problem.relinearize();
     const NavState::Matrix moving = problem.marginalInformation();
-    problem.setRest({problem.current().T_world_imu, sway, turn, speed, {1, 0, 0}});
+    problem.setMotionPrior({problem.current().T_world_imu, sway, turn, speed, {1, 0, 0}});
     problem.relinearize();
     const NavState::Matrix gained = problem.marginalInformation() - moving;
     NavState::Matrix expected = NavState::Matrix::Zero();

@@ -107,7 +107,7 @@ TEST_F(InitializerTest, ABodySwaysAsFarAsItTurnsAtRest)
                 return s;
             });
         EXPECT_TRUE(found);
-        return initializer.result()->sway;
+        return initializer.result()->position_sigma;
     };
     gyro_noise = 1e-5;
     EXPECT_EQ(swayOf(0), config.min_sway);
@@ -150,7 +150,7 @@ TEST_F(InitializerTest, AShorterRestIsUsedAndReported)
     ASSERT_TRUE(walk(initializer, 2));
     EXPECT_TRUE(initializer.result()->at_rest);
     EXPECT_NEAR(initializer.result()->rest_duration, 3, 0.5);
-    EXPECT_EQ(initializer.result()->sway, config.max_sway);
+    EXPECT_EQ(initializer.result()->position_sigma, config.max_sway);
     EXPECT_EQ(initializer.result()->estimate.state.t, start);
     expectTrueAttitude(*initializer.result());
     ASSERT_EQ(log.count("short_rest"), 1u);

@@ -316,7 +316,7 @@ LidarFit LidarFactor::fit(const SweepPath& path, double balance) const
     return f;
 }
 
-double LidarFactor::explained(const SweepPath& path) const
+double LidarFactor::inlierWeight(const SweepPath& path) const
 {
     double sum = 0;
     forResiduals(

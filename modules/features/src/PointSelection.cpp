@@ -35,8 +35,8 @@ class Draw
         drawn_.reserve(most_voxels);
     }
 
-    /** Of the points of a voxel the one of the smallest lot is kept. */
-    void add(std::uint64_t voxel, std::uint64_t lot, std::uint32_t point)
+    /** Of the points of a voxel the one of the smallest priority is kept. */
+    void add(std::uint64_t voxel, std::uint64_t priority, std::uint32_t point)
     {
         std::size_t at = placeOf(voxel);
         while (table_[at] != kEmpty && drawn_[table_[at]].voxel != voxel)
@@ -44,12 +44,12 @@ class Draw
         if (table_[at] == kEmpty)
         {
             table_[at] = static_cast<std::uint32_t>(drawn_.size());
-            drawn_.push_back({voxel, lot, point});
+            drawn_.push_back({voxel, priority, point});
             return;
         }
         Drawn& drawn = drawn_[table_[at]];
-        if (lot >= drawn.lot) return;
-        drawn.lot = lot;
+        if (priority >= drawn.priority) return;
+        drawn.priority = priority;
         drawn.point = point;
     }
 
@@ -64,7 +64,7 @@ class Draw
  private:
     struct Drawn
     {
-        std::uint64_t voxel, lot;
+        std::uint64_t voxel, priority;
         std::uint32_t point;
     };
     static constexpr std::uint32_t kEmpty = 0xffffffff;

@@ -48,7 +48,7 @@ bool decide(
     return changed;
 }
 /** Decides and solves until no decision changes. */
-bool settle(
+bool decideAndSolve(
     RobustProblem& problem, const std::vector<std::size_t>& closures, double outlier_chi2,
     std::vector<double>& weights)
 {
@@ -84,7 +84,7 @@ bool hearAgain(
     const double cost = truncatedCost(problem, closures, outlier_chi2, weights);
     problem.save();
     problem.minimize(others, Effort::Rough);
-    const bool converged = settle(problem, closures, outlier_chi2, others);
+    const bool converged = decideAndSolve(problem, closures, outlier_chi2, others);
     if (converged && truncatedCost(problem, closures, outlier_chi2, others) < cost - kLeastGain)
     {
         weights = others;
@@ -132,7 +132,7 @@ bool minimizeRobustly(
         problem.minimize(weights, Effort::Step);
         if (decided) break;
     }
-    bool converged = settle(problem, closures, bound, weights);
+    bool converged = decideAndSolve(problem, closures, bound, weights);
     for (int i = 0; i < kMaxHearings && hearAgain(problem, closures, bound, weights); i++)
         converged = true;
     return converged;

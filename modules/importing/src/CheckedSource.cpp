@@ -11,10 +11,10 @@ constexpr Duration kJudged = 2'000'000'000;
 constexpr std::size_t kMostScansHeld = 25;
 constexpr std::size_t kFewestSamples = 10;
 
-std::string line(
-    const std::string& what, const std::string& unit, double scale, const std::string& reason)
+std::string line(const std::string& what, const Unit& unit, const std::string& reason)
 {
-    return what + " in " + unit + (scale == 1 ? "" : ", converted") + " (" + reason + ")";
+    return what + " in " + unit.name + (unit.factor == 1 ? "" : ", converted") + " (" + reason +
+           ")";
 }
 }  // namespace
 
@@ -52,9 +52,9 @@ std::optional<ImportedItem> CheckedSource::next()
 
 void CheckedSource::convert(ImuSample& sample)
 {
-    sample.accel *= units_.accel_scale;
-    sample.gyro *= units_.gyro_scale;
-    if (sample.gyro.norm() <= ImuUnitJudge::kFastestRate || std::exchange(too_fast_, true)) return;
+    sample.accel *= units_.accel.factor;
+    sample.gyro *= units_.gyro.factor;
+    if (sample.gyro.norm() <= kFastestRate || std::exchange(too_fast_, true)) return;
     warn(
         sample.t, "imu_units",
         "a rate of " + std::to_string(sample.gyro.norm()) +
@@ -106,18 +106,17 @@ void CheckedSource::judge()
     if (samples_ >= kFewestSamples) units_ = judge_.units();
     if (options_.accel_scale)
     {
-        units_.accel_scale = *options_.accel_scale;
-        units_.accel_name = "units of " + std::to_string(units_.accel_scale) + " m/s^2";
+        const double factor = *options_.accel_scale;
+        units_.accel = {"units of " + std::to_string(factor) + " m/s^2", factor};
         units_.accel_reason = "as told";
-        units_.accel_fits = true;
     }
     if (options_.gyro_scale)
     {
-        units_.gyro_scale = *options_.gyro_scale;
-        units_.gyro_name = "units of " + std::to_string(units_.gyro_scale) + " rad/s";
+        const double factor = *options_.gyro_scale;
+        units_.gyro = {"units of " + std::to_string(factor) + " rad/s", factor};
         units_.gyro_reason = "as told";
     }
-    if (!units_.accel_fits)
+    if (!units_.accel.known())
         warn(
             first_sample_, "imu_units",
             "specific force: " + units_.accel_reason +
@@ -140,10 +139,10 @@ void CheckedSource::finish()
             what + " were taken as " + taken + ", but later ones speak for " + later + " (" +
                 reason + "): tell the unit by a rig file and import again");
     };
-    if (!options_.gyro_scale && all.gyro_scale != units_.gyro_scale)
-        contradict("the rates", units_.gyro_name, all.gyro_name, all.gyro_reason);
-    if (!options_.accel_scale && all.accel_scale != units_.accel_scale)
-        contradict("the forces", units_.accel_name, all.accel_name, all.accel_reason);
+    if (!options_.gyro_scale && all.gyro.factor != units_.gyro.factor)
+        contradict("the rates", units_.gyro.name, all.gyro.name, all.gyro_reason);
+    if (!options_.accel_scale && all.accel.factor != units_.accel.factor)
+        contradict("the forces", units_.accel.name, all.accel.name, all.accel_reason);
 }
 
 std::vector<std::string> CheckedSource::findings() const
@@ -155,9 +154,8 @@ std::vector<std::string> CheckedSource::findings() const
         lines.emplace_back("IMU: too few samples to judge their units");
         return lines;
     }
-    lines.push_back(
-        line("specific force", units_.accel_name, units_.accel_scale, units_.accel_reason));
-    lines.push_back(line("rates", units_.gyro_name, units_.gyro_scale, units_.gyro_reason));
+    lines.push_back(line("specific force", units_.accel, units_.accel_reason));
+    lines.push_back(line("rates", units_.gyro, units_.gyro_reason));
     return lines;
 }
 

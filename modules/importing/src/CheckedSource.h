@@ -3,7 +3,7 @@
 #include <deque>
 #include <memory>
 
-#include "ImuUnitJudge.h"
+#include "taut/core/ImuUnits.h"
 #include "taut/core/Warning.h"
 #include "taut/importing/ImportOptions.h"
 #include "taut/importing/ImportSource.h"

@@ -11,12 +11,11 @@ namespace
 {
 constexpr Duration kSecond = 1'000'000'000;
 constexpr std::size_t kMostOfASecond = 10'000;
-constexpr double kFastestRate = 80;    // rad/s; gyros end at 35 (2000 deg/s) or 70 (4000 deg/s)
-constexpr double kGapIntervals = 3.5;  // times the usual interval, and
-constexpr double kGapSeconds = 0.03;   // what the preintegration calls a gap
-constexpr double kJitter = 0.1;        // share of intervals half off the usual one
-constexpr double kSlowest = 50;        // Hz
-constexpr std::size_t kClipped = 5;    // samples that share their extreme
+constexpr double kGapIntervals = 3.5;         // times the usual interval, and
+constexpr double kGapSeconds = 0.03;          // what the preintegration calls a gap
+constexpr double kJitter = 0.1;               // share of intervals half off the usual one
+constexpr double kSlowest = 50;               // Hz
+constexpr std::size_t kClipped = 5;           // samples that share their extreme
 constexpr double kSmallestGyroRange = 2.0;    // rad/s: no gyro ends below 125 deg/s
 constexpr double kSmallestAccelRange = 19.0;  // m/s^2: nor an accelerometer below 2 g
 constexpr double kRestTolerance = 0.5;        // s, windows of the rest detection
@@ -28,14 +27,6 @@ InitializationConfig toTheEndOfTheRest()
     InitializationConfig config;
     config.rest_duration = 1e9;
     return config;
-}
-
-Unit accelUnitOf(double mean_force)
-{
-    if (mean_force > 0.3 && mean_force < 3) return {"g", 9.80665};
-    if (mean_force >= 5 && mean_force <= 20) return {"m/s^2", 1};
-    if (mean_force > 500 && mean_force < 1500) return {"milli-g", 0.00980665};
-    return {"unknown", 1};
 }
 }  // namespace
 
@@ -75,6 +66,7 @@ void ImuInspector::add(const ImuSample& sample)
         intervals_.add(last_, sample.t - last_);
     samples_++;
     last_ = sample.t;
+    unit_judge_.add(sample);
     add(gyro_extremes_, sample.gyro, sample.t);
     add(accel_extremes_, sample.accel, sample.t);
     if (rest_started_)
@@ -93,7 +85,7 @@ void ImuInspector::startRest()
     if (first_second_.empty()) return;
     for (const ImuSample& s : first_second_) mean_force_ += s.accel.norm();
     mean_force_ /= static_cast<double>(first_second_.size());
-    accel_unit_ = accelUnitOf(mean_force_);
+    accel_unit_ = accelUnit(mean_force_);
     for (const ImuSample& s : first_second_) addToRest(s);
     first_second_ = {};
 }
@@ -122,7 +114,7 @@ ImuFacts ImuInspector::facts(std::optional<bool> gyro_in_degrees) const
     f.last = last_;
     f.rate = intervals_.median() > 0 ? 1 / intervals_.median() : 0;
     f.accel_unit = accel_unit_;
-    const bool degrees = gyro_in_degrees.value_or(largest(gyro_extremes_) > kFastestRate);
+    const bool degrees = gyro_in_degrees.value_or(unit_judge_.tooFastForRadians());
     f.gyro_unit = degrees ? Unit{"deg/s", kDegree} : Unit{"rad/s", 1};
     f.max_gyro = largest(gyro_extremes_) * f.gyro_unit.factor;
     f.max_accel = largest(accel_extremes_) * f.accel_unit.factor;
@@ -187,7 +179,7 @@ void ImuInspector::addTiming(const ImuFacts& facts, Findings& found) const
 
 void ImuInspector::addUnits(const ImuFacts& facts, Findings& found) const
 {
-    if (accel_unit_.name == "unknown")
+    if (!accel_unit_.known())
         found.push_back(
             {first_, "imu_units", mean_force_, "as recorded", 1,
              format(

@@ -162,9 +162,9 @@ class Inspector
         {
             for (Finding& f : found) result_.findings.push_back(std::move(f));
         };
-        const bool own_units = result_.imu && (result_.imu->accel_unit.factor != 1 ||
-                                               result_.imu->gyro_unit.factor != 1 ||
-                                               result_.imu->accel_unit.name == "unknown");
+        const bool own_units =
+            result_.imu && (result_.imu->accel_unit.factor != 1 ||
+                            result_.imu->gyro_unit.factor != 1 || !result_.imu->accel_unit.known());
         append(warnings_.findings(result_.log, own_units));
         if (result_.lidar) append(lidar_.findings(*result_.lidar));
         if (result_.imu)

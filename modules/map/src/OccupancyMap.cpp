@@ -32,7 +32,7 @@ std::ostream& writeHeader(std::ostream& file, const char* kind, const octomap::O
 
 std::uint64_t voxelOf(const octomap::OcTreeKey& key)
 {
-    return std::uint64_t{key[0]} << 42 | std::uint64_t{key[1]} << 21 | key[2];
+    return packVoxel(key[0], key[1], key[2]);
 }
 
 /** Key of the cell twice as large that holds the cell of this key; the tree's origin stays. */
@@ -82,7 +82,7 @@ void OccupancyMap::insert(
     insertRays(toOctomap(origin), cloud);
     inserted_++;
     const auto most = static_cast<std::size_t>(config_.max_nodes);
-    if (inserted_ % kInsertionsPerPruning == 0 || tree_->size() > most) settle();
+    if (inserted_ % kInsertionsPerPruning == 0 || tree_->size() > most) updateInnerNodes();
     while (tree_->size() > most)
     {
         const std::size_t before = tree_->size();
@@ -134,7 +134,7 @@ void OccupancyMap::insertRays(const octomap::point3d& origin, const octomap::Poi
     }
 }
 
-void OccupancyMap::settle() const
+void OccupancyMap::updateInnerNodes() const
 {
     tree_->updateInnerOccupancy();
     tree_->prune();
@@ -142,7 +142,7 @@ void OccupancyMap::settle() const
 
 const octomap::OcTree& OccupancyMap::tree() const
 {
-    settle();
+    updateInnerNodes();
     return *tree_;
 }
 

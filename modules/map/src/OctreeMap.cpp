@@ -14,14 +14,13 @@ namespace
 constexpr double kBlockSize = 8.0;    // [m] about: unit of forgetting
 constexpr int kRecenterKeys = 16384;  // leaves from the origin: half of what keys can name
 
-constexpr int kRipeLevel = 2;       // of the nodes that are judged: 4 leaves a side
-constexpr unsigned kRipeShare = 4;  // one point in so many
+constexpr int kDenseLevel = 2;       // of the nodes that are judged: 4 leaves a side
+constexpr unsigned kDenseShare = 4;  // one point in so many
 
 /** The node of that level that holds a leaf. */
-std::uint64_t ripeKey(const octomap::OcTreeKey& leaf)
+std::uint64_t denseKey(const octomap::OcTreeKey& leaf)
 {
-    return std::uint64_t{leaf[0]} >> kRipeLevel << 42 | std::uint64_t{leaf[1]} >> kRipeLevel << 21 |
-           std::uint64_t{leaf[2]} >> kRipeLevel;
+    return packVoxel(leaf[0] >> kDenseLevel, leaf[1] >> kDenseLevel, leaf[2] >> kDenseLevel);
 }
 }  // namespace
 
@@ -38,7 +37,7 @@ OctreeMap::OctreeMap(const OctreeMap& other)
       range_noise_(other.range_noise_),
       insertions_(other.insertions_),
       state_(std::make_shared<const char>()),
-      ripe_(other.ripe_),
+      dense_(other.dense_),
       blocks_(other.blocks_),
       last_center_(other.last_center_),
       origin_(other.origin_)
@@ -62,7 +61,7 @@ void OctreeMap::configure(ConfigSection& s)
     s.key("gate", config.gate, kPositive, "m, largest distance to the surface");
     s.key("min_sigma", config.min_sigma, kPositive, "m, no surface is believed to be thinner");
     s.key(
-        "ripe_points", config.ripe_points, kPositive,
+        "dense_points", config.dense_points, kPositive,
         "in a node of 4 leaf_size: from then on it takes one point in four, with that weight");
     s.key("lines", config.lines, "match thin, long windows as lines");
     s.key(
@@ -77,7 +76,7 @@ void OctreeMap::clear()
     blocks_.clear();
     insertions_ = 0;
     range_noise_ = 0;
-    ripe_.clear();
+    dense_.clear();
     last_center_.setConstant(1e300);
     origin_.setZero();
     changed();
@@ -86,7 +85,7 @@ void OctreeMap::clear()
 unsigned OctreeMap::blockDepth() const
 {
     const int up = static_cast<int>(std::lround(std::log2(kBlockSize / config.leaf_size)));
-    return kTreeDepth - static_cast<unsigned>(std::clamp(up, config.scales - 1, 15));
+    return StatisticsTree::kDepth - static_cast<unsigned>(std::clamp(up, config.scales - 1, 15));
 }
 
 void OctreeMap::insert(const std::vector<MapPoint>& points, Executor& executor)
@@ -101,12 +100,12 @@ void OctreeMap::insert(const std::vector<MapPoint>& points, Executor& executor)
         });
     const auto dropped = [](const StatisticsTree::Entry& e) { return e.weight == 0; };
     entries_.erase(std::remove_if(entries_.begin(), entries_.end(), dropped), entries_.end());
-    const std::vector<std::uint64_t> ripe = tree_->add(
-        entries_, depthOf(config.scales - 1), {depthOf(kRipeLevel), config.ripe_points},
+    const std::vector<std::uint64_t> dense = tree_->add(
+        entries_, depthOf(config.scales - 1), {depthOf(kDenseLevel), config.dense_points},
         [&](const StatisticsTree::Entry& e, PointStatistics& sum)
         { sum.add(points[e.index].position, points[e.index].view, e.weight); },
         executor);
-    for (const std::uint64_t way : ripe) ripe_.insert(ripeKey(StatisticsTree::endOf(way)));
+    for (const std::uint64_t morton : dense) dense_.insert(denseKey(StatisticsTree::keyOf(morton)));
     rememberBlocks(entries_);
     insertions_++;
     changed();
@@ -131,31 +130,31 @@ StatisticsTree::Entry OctreeMap::entryOf(const Vector3d& p, std::uint32_t index)
 {
     octomap::OcTreeKey leaf;
     if (!leafOf(p, leaf)) return {0, index, 0};
-    return {StatisticsTree::wayTo(leaf), index, weightOf(leaf, index)};
+    return {StatisticsTree::mortonOf(leaf), index, weightOf(leaf, index)};
 }
 
 std::uint32_t OctreeMap::weightOf(const octomap::OcTreeKey& leaf, std::uint32_t point) const
 {
-    if (!ripe_.contains(ripeKey(leaf))) return 1;
-    const std::uint64_t lot = mixBits(std::uint64_t{insertions_} << 32 | point);
-    return lot % kRipeShare == 0 ? kRipeShare : 0;
+    if (!dense_.contains(denseKey(leaf))) return 1;
+    const std::uint64_t draw = mixBits(std::uint64_t{insertions_} << 32 | point);
+    return draw % kDenseShare == 0 ? kDenseShare : 0;
 }
 
 void OctreeMap::rememberBlocks(const StatisticsTree::Entries& sorted)
 {
-    const unsigned above_leaf = kTreeDepth - blockDepth();
+    const unsigned above_leaf = StatisticsTree::kDepth - blockDepth();
     std::uint64_t last_block = ~std::uint64_t{0};
     for (const StatisticsTree::Entry& e : sorted)
     {
-        const std::uint64_t block = e.way >> 3 * above_leaf;
-        if (block != last_block) remember(StatisticsTree::endOf(e.way));
+        const std::uint64_t block = e.morton >> 3 * above_leaf;
+        if (block != last_block) remember(StatisticsTree::keyOf(e.morton));
         last_block = block;
     }
 }
 
 void OctreeMap::remember(const octomap::OcTreeKey& leaf)
 {
-    const unsigned shift = kTreeDepth - blockDepth();
+    const unsigned shift = StatisticsTree::kDepth - blockDepth();
     blocks_.insert(pack(
         static_cast<std::uint16_t>(leaf[0] >> shift << shift),
         static_cast<std::uint16_t>(leaf[1] >> shift << shift),
@@ -167,7 +166,7 @@ void OctreeMap::slide(const Vector3d& center_world)
     if ((center_world - last_center_).norm() < kBlockSize) return;
     last_center_ = center_world;
     changed();
-    ripe_.clear();  // of what may be forgotten; the others tell again
+    dense_.clear();  // of what may be forgotten; the others tell again
     const double reach = config.window_radius + kBlockSize;
     const auto outside = [&](const octomap::OcTreeKey& key, unsigned depth)
     {
@@ -190,7 +189,8 @@ void OctreeMap::slide(const Vector3d& center_world)
         }
     }
     if (blocks_.size() < blocks)
-        forgetWindows([&](std::uint64_t corner) { return outside(unpack(corner), kTreeDepth); });
+        forgetWindows([&](std::uint64_t corner)
+                      { return outside(unpack(corner), StatisticsTree::kDepth); });
     if ((center_world - origin_).cwiseAbs().maxCoeff() > kRecenterKeys * config.leaf_size)
         recenter(center_world);
 }
@@ -213,13 +213,13 @@ void OctreeMap::recenter(const Vector3d& center_world)
 {
     StatisticsTree::Entries entries;
     std::vector<PointStatistics> leaves;
-    const double edge = config.leaf_size * (1 << (kTreeDepth - blockDepth()));
+    const double edge = config.leaf_size * (1 << (StatisticsTree::kDepth - blockDepth()));
     std::array<int, 3> shift{};  // of the keys, by whole blocks: every node keeps its content
     for (int i = 0; i < 3; i++)
     {
         const double blocks = std::round((center_world[i] - origin_[i]) / edge);
         shift[static_cast<std::size_t>(i)] =
-            static_cast<int>(blocks * (1 << (kTreeDepth - blockDepth())));
+            static_cast<int>(blocks * (1 << (StatisticsTree::kDepth - blockDepth())));
         origin_[i] += blocks * edge;
     }
     blocks_.clear();
@@ -231,7 +231,8 @@ void OctreeMap::recenter(const Vector3d& center_world)
             static_cast<std::uint16_t>(old[0] - shift[0]),
             static_cast<std::uint16_t>(old[1] - shift[1]),
             static_cast<std::uint16_t>(old[2] - shift[2]));
-        entries.push_back({StatisticsTree::wayTo(key), static_cast<std::uint32_t>(leaves.size())});
+        entries.push_back(
+            {StatisticsTree::mortonOf(key), static_cast<std::uint32_t>(leaves.size())});
         leaves.push_back(it->statistics());
     }
     tree_ = std::make_unique<StatisticsTree>(config.leaf_size);

@@ -66,14 +66,14 @@ std::uint16_t gather(std::uint64_t bits)
 }
 }  // namespace
 
-std::uint64_t StatisticsTree::wayTo(const octomap::OcTreeKey& key)
+std::uint64_t StatisticsTree::mortonOf(const octomap::OcTreeKey& key)
 {
     return spread(key[0]) | spread(key[1]) << 1 | spread(key[2]) << 2;
 }
 
-octomap::OcTreeKey StatisticsTree::endOf(std::uint64_t way)
+octomap::OcTreeKey StatisticsTree::keyOf(std::uint64_t morton)
 {
-    return {gather(way), gather(way >> 1), gather(way >> 2)};
+    return {gather(morton), gather(morton >> 1), gather(morton >> 2)};
 }
 
 void StatisticsTree::remove(const octomap::OcTreeKey& key, unsigned depth)
@@ -151,15 +151,15 @@ void StatisticsTree::sort(Entries& entries)
     // By one byte of the ways after the other, from the lowest: each time the order within equal
     // bytes stays. Few bytes differ, and for thousands of entries this is faster than comparing.
     std::uint64_t differing = 0;
-    for (const Entry& e : entries) differing |= e.way ^ entries.front().way;
+    for (const Entry& e : entries) differing |= e.morton ^ entries.front().morton;
     sorted_.resize(entries.size());
     for (unsigned shift = 0; shift < 64; shift += 8)
     {
         if ((differing >> shift & 0xff) == 0) continue;
         std::array<std::uint32_t, 257> begin{};
-        for (const Entry& e : entries) begin[(e.way >> shift & 0xff) + 1]++;
+        for (const Entry& e : entries) begin[(e.morton >> shift & 0xff) + 1]++;
         std::partial_sum(begin.begin(), begin.end(), begin.begin());
-        for (const Entry& e : entries) sorted_[begin[e.way >> shift & 0xff]++] = e;
+        for (const Entry& e : entries) sorted_[begin[e.morton >> shift & 0xff]++] = e;
         entries.swap(sorted_);
     }
 }

@@ -64,7 +64,7 @@ void Odometry::start(const Initialization& initialization)
         noise_.gyro = std::max(noise_.gyro, initialization.measured_noise.gyro);
         noise_.accel = std::max(noise_.accel, initialization.measured_noise.accel);
     }
-    usual_explained_ = usual_fit_ = 0;
+    usual_inlier_share_ = usual_fit_ = 0;
     map_->clear();
 }
 
@@ -133,13 +133,13 @@ SweepPath Odometry::estimate(
     LidarFactor::PoseCovariance uncertain = problem.predictedPoseCovariance();
     if (result.with_imu && hasLongGap(motion) && !map_->empty())
     {
-        uncertain = registration.startAfterGap(usual_explained_);
+        uncertain = registration.startAfterGap(usual_inlier_share_);
         rest_ = {};  // nothing says that it rests still
     }
     else
     {
         const double rate = logSO3(motion.knots.back().delta.gamma).norm() / motion.duration();
-        problem.setRest(rest_.at(problem.current(), problem.predictedCovariance(), rate));
+        problem.setMotionPrior(rest_.at(problem.current(), problem.predictedCovariance(), rate));
     }
     const std::string failure = registration.iterate(uncertain, result.report);
     if (!failure.empty()) throw std::runtime_error(failure);
@@ -167,17 +167,17 @@ SweepPath Odometry::estimate(
 
 void Odometry::judgeFit(ScanReport& report)
 {
-    if (!report.lidar_used || !std::isfinite(report.explained)) return;
+    if (!report.lidar_used || !std::isfinite(report.inlier_weight)) return;
     report.usual_fit = usual_fit_;
-    const double explained = report.explained / report.features;
+    const double inlier_share = report.inlier_weight / report.features;
     if (usual_fit_ == 0)
     {
         usual_fit_ = report.fit();
-        usual_explained_ = explained;
+        usual_inlier_share_ = inlier_share;
     }
     const double memory = isDoubtful(report) ? kDoubtMemory : kFitMemory;
     usual_fit_ += memory * (report.fit() - usual_fit_);
-    usual_explained_ += memory * (explained - usual_explained_);
+    usual_inlier_share_ += memory * (inlier_share - usual_inlier_share_);
 }
 
 void Odometry::endRestIfLeft(const NavState::Matrix& lidar_information)

@@ -137,7 +137,7 @@ void Pipeline::start()
     {
         const StartInMotion found = findStartInMotion(
             *initialization_, [this](const Initialization& from) { return firstScansFrom(from); });
-        if (!found.settled)
+        if (!found.converged)
             warn(
                 found.start.estimate.state.t, "start_unsettled",
                 "the first scans do not agree on velocity and gravity at the start: the beginning "

@@ -74,7 +74,7 @@ std::vector<Pose> PoseSearch::posesAfter(
     return poses;
 }
 
-double PoseSearch::explained(const Pose& T_world_imu)
+double PoseSearch::inlierWeight(const Pose& T_world_imu)
 {
     std::vector<MapPoint> queries = scan_;
     for (MapPoint& q : queries)
@@ -101,7 +101,7 @@ double PoseSearch::explained(const Pose& T_world_imu)
 std::vector<Pose> PoseSearch::bestOf(const std::vector<Pose>& poses, std::size_t count)
 {
     std::vector<std::pair<double, std::size_t>> ranked;
-    for (std::size_t i = 0; i < poses.size(); i++) ranked.emplace_back(-explained(poses[i]), i);
+    for (std::size_t i = 0; i < poses.size(); i++) ranked.emplace_back(-inlierWeight(poses[i]), i);
     std::sort(ranked.begin(), ranked.end());
     std::vector<Pose> best;
     for (const auto& [score, i] : ranked)

@@ -105,7 +105,7 @@ std::string Registration::iterate(LidarFactor::PoseCovariance unexplained, ScanR
         report.converged = solved.last_step < config.min_step;
         if (report.converged && i > 0) break;
     }
-    report.explained = lidar_.explained(path_);
+    report.inlier_weight = lidar_.inlierWeight(path_);
     return {};
 }
 
@@ -120,10 +120,10 @@ double Registration::balanceOf(int matches) const
 LidarFactor::PoseCovariance Registration::startAfterGap(double usual_share)
 {
     const NavState predicted = problem_.current();
-    RestPrior carried;
+    MotionPrior carried;
     carried.v_world = before_.v_world;
-    carried.speed = kCarried;
-    problem_.setRest(carried);
+    carried.velocity_sigma = kCarried;
+    problem_.setMotionPrior(carried);
 
     NavState best = predicted;
     double most = -1;
@@ -132,8 +132,8 @@ LidarFactor::PoseCovariance Registration::startAfterGap(double usual_share)
         ScanReport tried;
         problem_.startFrom(start);
         const std::string failure = iterate(covarianceOfGuess(), tried);
-        if (!failure.empty() || !(tried.explained > kClearlyBetter * most)) return;
-        most = tried.explained;
+        if (!failure.empty() || !(tried.inlier_weight > kClearlyBetter * most)) return;
+        most = tried.inlier_weight;
         best = start;
     };
     attempt(predicted);

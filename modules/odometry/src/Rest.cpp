@@ -32,25 +32,25 @@ Rest::Rest(const Initialization& initialization, const InitializationConfig& con
     const NavState& x = initialization.estimate.state;
     end_ = x.t + fromSeconds(initialization.rest_duration);
     prior_.T_world_imu = x.T_world_imu;
-    prior_.sway = initialization.sway;
-    prior_.turn = initialization.sway / lever_;
+    prior_.position_sigma = initialization.position_sigma;
+    prior_.rotation_sigma = initialization.position_sigma / lever_;
 }
 
-RestPrior Rest::at(
+MotionPrior Rest::at(
     const NavState& predicted, const NavState::Matrix& covariance, double angular_rate)
 {
     if (!lasts_) return {};
     if (predicted.t <= end_) return prior_;
     const Matrix3d& R = prior_.T_world_imu.R;
     reach_ = std::max(reach_, lever_ * logSO3(R.transpose() * predicted.T_world_imu.R).norm());
-    prior_.sway = reach_;
-    prior_.turn = std::numeric_limits<double>::infinity();
-    prior_.speed = std::max(kCreep, lever_ * angular_rate);
+    prior_.position_sigma = reach_;
+    prior_.rotation_sigma = std::numeric_limits<double>::infinity();
+    prior_.velocity_sigma = std::max(kCreep, lever_ * angular_rate);
     const Matrix3d expected = covariance.block<3, 3>(NavState::kVelocity, NavState::kVelocity) +
-                              square(prior_.speed) * Matrix3d::Identity();
+                              square(prior_.velocity_sigma) * Matrix3d::Identity();
     const Vector3d& v = predicted.v_world;
     lasts_ = angular_rate < kSlowTurn && v.dot(expected.inverse() * v) < square(kLeft);
-    return lasts_ ? prior_ : RestPrior{};
+    return lasts_ ? prior_ : MotionPrior{};
 }
 
 std::optional<Rest::Displacement> Rest::endIfLeft(
@@ -60,11 +60,14 @@ std::optional<Rest::Displacement> Rest::endIfLeft(
     const bool found_by_imu = state.t <= end_;
     const Pose left = prior_.T_world_imu.inverse() * state.T_world_imu;
     Displacement seen;
-    seen.moved =
-        seenOf(prior_.T_world_imu.R * left.p, lidar_information, NavState::kPosition, prior_.sway);
+    seen.moved = seenOf(
+        prior_.T_world_imu.R * left.p, lidar_information, NavState::kPosition,
+        prior_.position_sigma);
     if (found_by_imu)
-        seen.turned = seenOf(logSO3(left.R), lidar_information, NavState::kRotation, prior_.turn);
-    lasts_ = seen.moved < kLeft * prior_.sway && seen.turned < kLeft * prior_.turn;
+        seen.turned =
+            seenOf(logSO3(left.R), lidar_information, NavState::kRotation, prior_.rotation_sigma);
+    lasts_ =
+        seen.moved < kLeft * prior_.position_sigma && seen.turned < kLeft * prior_.rotation_sigma;
     if (lasts_ || !found_by_imu) return std::nullopt;
     return seen;
 }

@@ -140,10 +140,12 @@ double ScanProblem::addRest(ProblemMatrix& H, ProblemVector& g) const
         cost += 0.5 * w * e.squaredNorm();
     };
     const Pose& pose = current_.T_world_imu;
-    const Vector3d turned = logSO3(rest_.T_world_imu.R.transpose() * pose.R);
-    add(NavState::kPosition, pose.p - rest_.T_world_imu.p, Matrix3d::Identity(), rest_.sway);
-    add(NavState::kVelocity, current_.v_world - rest_.v_world, Matrix3d::Identity(), rest_.speed);
-    add(NavState::kRotation, turned, inverseRightJacobianSO3(turned), rest_.turn);
+    const Vector3d turned = logSO3(motion_prior_.T_world_imu.R.transpose() * pose.R);
+    add(NavState::kPosition, pose.p - motion_prior_.T_world_imu.p, Matrix3d::Identity(),
+        motion_prior_.position_sigma);
+    add(NavState::kVelocity, current_.v_world - motion_prior_.v_world, Matrix3d::Identity(),
+        motion_prior_.velocity_sigma);
+    add(NavState::kRotation, turned, inverseRightJacobianSO3(turned), motion_prior_.rotation_sigma);
     return cost;
 }
 

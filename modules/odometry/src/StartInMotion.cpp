@@ -11,15 +11,15 @@ namespace taut
 {
 namespace
 {
-constexpr double kSettledVelocity = 0.02;  // [m/s] is negligible
-constexpr double kSettledTilt = 0.003;     // [rad]
-constexpr double kSharpestVelocity = 0.1;  // [m/s] a revised start is known no better
-constexpr double kSharpestTilt = 0.01;     // [rad]
-constexpr double kWellMatched = 0.5;       // share of the features
+constexpr double kNegligibleVelocity = 0.02;  // [m/s] is negligible
+constexpr double kNegligibleTilt = 0.003;     // [rad]
+constexpr double kLeastVelocitySigma = 0.1;   // [m/s] a revised start is known no better
+constexpr double kLeastTiltSigma = 0.01;      // [rad]
+constexpr double kWellMatched = 0.5;          // share of the features
 
 // Passes over the first scans, and what of their outcome is worth a warning.
 constexpr int kPasses = 12;
-constexpr double kUnsettled = 20;      // changes that are negligible
+constexpr double kStillChanging = 20;  // changes that are negligible
 constexpr double kWrongGravity = 1.0;  // [m/s^2] off what it is on Earth
 constexpr double kWorse = 1.3;         // misfit of a pass to that of the one before
 constexpr double kNoBetter = 0.5;      // change by a pass to that by the one before
@@ -81,7 +81,7 @@ struct Revision
     /** Its size in what is negligible: at most 1 when map and motion agree. */
     double change() const
     {
-        return std::max(velocity.norm() / kSettledVelocity, tilt() / kSettledTilt);
+        return std::max(velocity.norm() / kNegligibleVelocity, tilt() / kNegligibleTilt);
     }
 };
 
@@ -113,13 +113,13 @@ NavState revised(NavState x, const Revision& revision)
 }
 
 /** The covariance of a start that is known as well as it was revised. */
-NavState::Matrix sharpened(const NavState::Matrix& covariance, const Revision& revision)
+NavState::Matrix posteriorCovariance(const NavState::Matrix& covariance, const Revision& revision)
 {
     NavState::Matrix information = covariance.inverse();
     const auto add = [&](int at, double sigma)
     { information.diagonal().segment<3>(at).array() += 1 / square(sigma); };
-    add(NavState::kVelocity, std::max(kSharpestVelocity, revision.velocity.norm()));
-    add(NavState::kRotation, std::max(kSharpestTilt, revision.tilt()));
+    add(NavState::kVelocity, std::max(kLeastVelocitySigma, revision.velocity.norm()));
+    add(NavState::kRotation, std::max(kLeastTiltSigma, revision.tilt()));
     return information.inverse();
 }
 
@@ -163,7 +163,7 @@ struct TriedStart
 };
 
 /** Passes over the first scans from one start, each with what the one before it told. */
-TriedStart settle(const Initialization& initialization, const FirstScans& first_scans)
+TriedStart refine(const Initialization& initialization, const FirstScans& first_scans)
 {
     // The start of each pass is as well known as it still changes.
     Initialization start = initialization, widened = start;
@@ -171,17 +171,17 @@ TriedStart settle(const Initialization& initialization, const FirstScans& first_
     double last_misfit = kUnknown, last_change = kUnknown;
     TriedStart best;
     best.start = initialization;
-    bool sharpen = true;
+    bool narrow = true;
     for (int pass = 0; pass < kPasses; pass++)
     {
         const std::vector<ScanResult> results = first_scans(start);
         if (results.size() < 2) break;
         const Revision revision = revisionOf(results);
         const double misfit = misfitOf(results);
-        if (sharpen && misfit > kWorse * last_misfit && revision.change() > kNoBetter * last_change)
+        if (narrow && misfit > kWorse * last_misfit && revision.change() > kNoBetter * last_change)
         {
             // Known too well too early, false matches agree with each other.
-            sharpen = false;
+            narrow = false;
             start = widened;
             continue;
         }
@@ -194,7 +194,8 @@ TriedStart settle(const Initialization& initialization, const FirstScans& first_
         if (revision.change() <= 1) break;
         widened.estimate.state = revised(start.estimate.state, revision);
         start = widened;
-        if (sharpen) start.estimate.covariance = sharpened(widened.estimate.covariance, revision);
+        if (narrow)
+            start.estimate.covariance = posteriorCovariance(widened.estimate.covariance, revision);
     }
     return best;
 }
@@ -202,9 +203,9 @@ TriedStart settle(const Initialization& initialization, const FirstScans& first_
 
 StartInMotion findStartInMotion(const Initialization& initialization, const FirstScans& first_scans)
 {
-    TriedStart best = settle(initialization, first_scans);
+    TriedStart best = refine(initialization, first_scans);
     // False matches hold a start near the velocity that it began with: where few of the features
-    // match, or the passes do not settle, others may agree with more of what the scans see.
+    // match, or the passes do not converge, others may agree with more of what the scans see.
     if (!best.convincing())
     {
         for (const Vector3d& direction : kOtherStarts)
@@ -212,10 +213,10 @@ StartInMotion findStartInMotion(const Initialization& initialization, const Firs
             Initialization other = initialization;
             NavState& x = other.estimate.state;
             x.v_world += x.T_world_imu.R * Vector3d(kOtherSpeed * direction);
-            const TriedStart tried = settle(other, first_scans);
+            const TriedStart tried = refine(other, first_scans);
             if (tried.cost < best.cost) best = tried;
         }
     }
-    return {best.start, best.change <= kUnsettled && best.gravity_error <= kWrongGravity};
+    return {best.start, best.change <= kStillChanging && best.gravity_error <= kWrongGravity};
 }
 }  // namespace taut

@@ -15,7 +15,7 @@ constexpr std::size_t kStartingScans = 10;
 struct StartInMotion
 {
     Initialization start;
-    bool settled = true;  //!< the first scans agree on its velocity and on gravity
+    bool converged = true;  //!< the first scans agree on its velocity and on gravity
 };
 
 /** The results of the first scans from a start. */

@@ -230,7 +230,7 @@ Initialization Initializer::fromRest() const
 
     Initialization init;
     init.rest_duration = seconds;
-    init.sway = swayAtRest();
+    init.position_sigma = swayAtRest();
     init.measured_noise = {};
     init.measured_noise.accel = std::sqrt(std::max(0.0, accel_variance.mean()) * dt);
     init.measured_noise.gyro = std::sqrt(std::max(0.0, gyro_variance.mean()) * dt);

@@ -3,13 +3,12 @@
 #include <optional>
 #include <string>
 
-#include "taut/core/Imu.h"
+#include "taut/core/ImuUnits.h"
 
 namespace taut
 {
-/** Looks whether the values of an IMU can be in m/s^2 and rad/s: by the mean specific force of the
- * first second, by whether the gyro agrees with how gravity turned in it, and by rates that no IMU
- * reaches. */
+/** Looks whether the values of an IMU can be in m/s^2 and rad/s, and says the line of the rig file
+ * that mends it. The values themselves are never changed. */
 class ImuUnitCheck
 {
  public:
@@ -17,9 +16,10 @@ class ImuUnitCheck
     std::optional<std::string> add(const ImuSample& sample);
 
  private:
-    std::optional<std::string> judgeFirstSecond() const;
+    std::optional<std::string> judgeForce() const;
 
-    ImuSamples first_second_;
-    bool judged_ = false, rate_reported_ = false;
+    ImuUnitJudge judge_;
+    std::optional<Time> first_;
+    bool first_second_over_ = false, rate_reported_ = false;
 };
 }  // namespace taut

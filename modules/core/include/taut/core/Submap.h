@@ -32,6 +32,7 @@ struct SubmapScan
 /** What one scan saw, by direction. */
 struct KeyScan
 {
+    std::uint16_t scan = 0;  //!< which of Submap::scans it was
     Pose T_submap_sensor;
     double blur = 0;  //!< [m] way of the sensor during the scan: rays begin that far off
     RangeImage image;

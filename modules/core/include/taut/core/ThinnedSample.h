@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -21,6 +22,13 @@ class ThinnedSample
         for (std::size_t i = 0; 2 * i < items_.size(); i++) items_[i] = items_[2 * i];
         items_.resize((items_.size() + 1) / 2);
         stride_ *= 2;
+    }
+
+    /** Drops the items that a predicate tells. */
+    template <class Predicate>
+    void removeIf(const Predicate& predicate)
+    {
+        items_.erase(std::remove_if(items_.begin(), items_.end(), predicate), items_.end());
     }
 
     const std::vector<Item>& items() const { return items_; }

@@ -16,22 +16,28 @@ constexpr std::uint64_t mixBits(std::uint64_t x)
     return x ^ (x >> 31);
 }
 
+/** The key of a voxel by its numbers along x, y and z, of which 21 bits count each. */
+inline std::uint64_t packVoxel(std::uint64_t x, std::uint64_t y, std::uint64_t z)
+{
+    constexpr std::uint64_t bits = 0x1fffff;
+    return (x & bits) << 42 | (y & bits) << 21 | (z & bits);
+}
+
 /** The voxel that holds a finite point, 21 bits a coordinate. `inverse_size` is 1 / edge [1/m].
  * Voxels that are 2^21 voxels apart along an axis share a key. */
 template <class Scalar>
 std::uint64_t voxelKey(const Eigen::Matrix<Scalar, 3, 1>& point, Scalar inverse_size)
 {
     constexpr Scalar limit = (1 << 30) - (1 << 19);  // of what an integer names; no map is so large
-    std::uint64_t key = 0;
-    for (int i = 0; i < 3; i++)
+    const auto number = [&](int axis)
     {
-        const Scalar scaled = std::max(-limit, std::min(limit, point[i] * inverse_size));
+        const Scalar scaled = std::max(-limit, std::min(limit, point[axis] * inverse_size));
         auto cell =
             static_cast<std::int32_t>(scaled);  // towards zero; std::floor is 4 times slower
         cell -= scaled < static_cast<Scalar>(cell);
-        key = key << 21 | (static_cast<std::uint64_t>(cell + (1 << 20)) & 0x1fffff);
-    }
-    return key;
+        return static_cast<std::uint64_t>(cell + (1 << 20));
+    };
+    return packVoxel(number(0), number(1), number(2));
 }
 
 /** Hash of a voxel's key for hash tables. */

@@ -68,7 +68,7 @@ class LidarFactor
     /** How many features are explained by their surfaces: the sum of the weights of the residuals
      * by Geman and McClure's kernel, whatever kernel is configured, and by their noise alone,
      * neither balanced nor widened. */
-    double explained(const SweepPath& path) const;
+    double inlierWeight(const SweepPath& path) const;
 
  private:
     struct Interval;

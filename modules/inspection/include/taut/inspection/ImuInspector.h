@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "taut/core/Imu.h"
+#include "taut/core/ImuUnits.h"
 #include "taut/inspection/Finding.h"
 #include "taut/inspection/IntervalStatistics.h"
 #include "taut/preintegration/Initializer.h"
@@ -14,14 +14,6 @@ namespace taut
 /** Of a common MEMS IMU: the estimation takes the noise that it sees at rest, a finding is worth
  * only one that is out of the ordinary. */
 inline constexpr ImuNoise kOrdinaryNoise{2e-3, 2e-2, 1e-4, 1e-3};
-
-/** A unit as a recording seems to have it. */
-struct Unit
-{
-    std::string name;   //!< "m/s^2"; "unknown"
-    double factor = 1;  //!< to SI
-};
-inline constexpr double kDegree = 0.017453292519943295;  //!< [rad]
 
 /** What an IMU's samples tell by themselves. */
 struct ImuFacts
@@ -87,6 +79,7 @@ class ImuInspector
     Extremes gyro_extremes_, accel_extremes_;
     ImuSamples first_second_;
     bool rest_started_ = false;
+    ImuUnitJudge unit_judge_;
     double mean_force_ = 0;  // as recorded
     Unit accel_unit_{"m/s^2", 1};
     Initializer rest_rad_, rest_deg_;  // by the unit that the gyro may have

@@ -57,7 +57,7 @@ class OccupancyMap
      * are most of those that rays cross. */
     void insertRays(const octomap::point3d& origin, const octomap::Pointcloud& ends);
     /** Inner nodes are brought up to date, and equal leaves merged, not after every insertion. */
-    void settle() const;
+    void updateInnerNodes() const;
     void halveResolution();
 
     Config config_;

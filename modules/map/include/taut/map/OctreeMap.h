@@ -29,7 +29,7 @@ struct OctreeMapConfig
     double min_spread = 0.2;      //!< the same as a share of the half edge of the window
     double gate = 0.8;            //!< [m] largest distance from a surface to be matched with it
     double min_sigma = 0.005;     //!< [m] no surface is believed to be thinner
-    double ripe_points = 200;     //!< in a node of 4 leaf_size, which then takes one point in four
+    double dense_points = 200;    //!< in a node of 4 leaf_size, which then takes one point in four
     bool lines = false;           //!< match thin, long windows as lines
     double window_radius = 100;   //!< [m] half edge of the cube around the body that is kept
 };
@@ -240,7 +240,7 @@ class OctreeMap : public Map
     // Of the last insertion; kept, since fresh memory is slow.
     StatisticsTree::Entries entries_;
     Scratch learning_;
-    VoxelSet ripe_;  //!< nodes that hold enough to take a share of what comes, for all of it
+    VoxelSet dense_;  //!< nodes that hold enough to take a share of what comes, for all of it
     tsl::robin_set<std::uint64_t, VoxelHash> blocks_;  // coarse nodes that exist, for slide()
     Vector3d last_center_ = Vector3d::Constant(1e300);
     /** Where the keys begin [m]: octomap names 2^16 leaves a side, which moves with the body. */

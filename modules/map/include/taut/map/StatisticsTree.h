@@ -102,6 +102,8 @@ class StatisticsNode : public octomap::OcTreeDataNode<PointStatistics>
 class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
 {
  public:
+    static constexpr unsigned kDepth = 16;  //!< of the leaves, in every octomap tree
+
     explicit StatisticsTree(double leaf_size) : octomap::OcTreeBase<StatisticsNode>(leaf_size) {}
     bool isNodeCollapsible(const StatisticsNode*) const override { return false; }
     bool pruneNode(StatisticsNode*) override { return false; }
@@ -130,7 +132,7 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
     /** Something to be added to a leaf. */
     struct Entry
     {
-        std::uint64_t way = 0;     //!< wayTo() the leaf
+        std::uint64_t morton = 0;  //!< mortonOf() the leaf
         std::uint32_t index = 0;   //!< of what is to be added
         std::uint32_t weight = 1;  //!< how often
     };
@@ -138,12 +140,12 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
 
     /** The children from the root to a leaf, three bits each (Morton code): leaves in this order
      * are neighbours in the tree. */
-    static std::uint64_t wayTo(const octomap::OcTreeKey& key);
-    /** The leaf that a way leads to. */
-    static octomap::OcTreeKey endOf(std::uint64_t way);
+    static std::uint64_t mortonOf(const octomap::OcTreeKey& key);
+    /** The leaf of a Morton code. */
+    static octomap::OcTreeKey keyOf(std::uint64_t morton);
 
-    /** A node at this depth is ripe when it holds this many points. */
-    struct Ripeness
+    /** A node at this depth is dense when it holds this many points. */
+    struct DenseRule
     {
         unsigned depth = 0;
         double points = 0;
@@ -151,11 +153,11 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
 
     /** Adds to leaves, and to their ancestors from the given depth down, what `put(entry,
      * statistics)` adds for each entry. Every node is visited once, in the order of the entries'
-     * ways: the sums do not depend on threads. Sorts the entries in that order. Gives the way of an
-     * entry of each node that it leaves ripe. */
+     * Morton codes: the sums do not depend on threads. Sorts the entries in that order. Gives the
+     * code of one entry of each node that it leaves dense. */
     template <class Put>
     std::vector<std::uint64_t> add(
-        Entries& entries, unsigned from_depth, const Ripeness& ripeness, const Put& put,
+        Entries& entries, unsigned from_depth, const DenseRule& dense_rule, const Put& put,
         Executor& executor);
 
  private:
@@ -170,8 +172,8 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
     /** What comes of filling some subtrees. */
     struct Filled
     {
-        std::size_t created = 0;          //!< nodes
-        std::vector<std::uint64_t> ripe;  //!< a way through each ripe node
+        std::size_t created = 0;           //!< nodes
+        std::vector<std::uint64_t> dense;  //!< the code of a leaf in each dense node
     };
     /** As far as the ways to several keys are the same. */
     Place approachTogether(const octomap::OcTreeKey* keys, unsigned count, unsigned depth) const;
@@ -179,20 +181,20 @@ class StatisticsTree : public octomap::OcTreeBase<StatisticsNode>
     Branches branchesOf(const Entries& entries, unsigned depth);
     static std::size_t split(const Branches& branches, unsigned depth, Branches& below);
     template <class Put>
-    static Filled fill(Branches subtrees, unsigned depth, const Ripeness& ripeness, const Put& put);
+    static Filled fill(
+        Branches subtrees, unsigned depth, const DenseRule& dense_rule, const Put& put);
     static const Entry* childEnd(const Entry* begin, const Entry* end, unsigned depth);
     static unsigned childOf(const Entry& entry, unsigned depth)
     {
-        return static_cast<unsigned>(entry.way >> 3 * (kDepth - depth - 1) & 7);
+        return static_cast<unsigned>(entry.morton >> 3 * (kDepth - depth - 1) & 7);
     }
-    static constexpr unsigned kDepth = 16;  // of every octomap tree
 
     Entries sorted_;  // while sorting; kept, since fresh memory is slow
 };
 
 template <class Put>
 std::vector<std::uint64_t> StatisticsTree::add(
-    Entries& entries, unsigned from_depth, const Ripeness& ripeness, const Put& put,
+    Entries& entries, unsigned from_depth, const DenseRule& dense_rule, const Put& put,
     Executor& executor)
 {
     if (entries.empty()) return {};
@@ -205,22 +207,22 @@ std::vector<std::uint64_t> StatisticsTree::add(
         [&](std::size_t chunk, std::size_t begin, std::size_t end)
         {
             filled[chunk] = fill(
-                Branches(subtrees.data() + begin, subtrees.data() + end), from_depth, ripeness,
+                Branches(subtrees.data() + begin, subtrees.data() + end), from_depth, dense_rule,
                 put);
         });
-    std::vector<std::uint64_t> ripe;
+    std::vector<std::uint64_t> dense;
     for (const Filled& f : filled)
     {
         tree_size += f.created;
-        ripe.insert(ripe.end(), f.ripe.begin(), f.ripe.end());
+        dense.insert(dense.end(), f.dense.begin(), f.dense.end());
     }
     size_changed = true;
-    return ripe;
+    return dense;
 }
 
 template <class Put>
 StatisticsTree::Filled StatisticsTree::fill(
-    Branches subtrees, unsigned depth, const Ripeness& ripeness, const Put& put)
+    Branches subtrees, unsigned depth, const DenseRule& dense_rule, const Put& put)
 {
     // Depth by depth, not branch by branch: each node waits for memory, and these waits overlap.
     Filled filled;
@@ -238,8 +240,8 @@ StatisticsTree::Filled StatisticsTree::fill(
             const Branch& b = at[d][i];
             b.node->statistics().add(added[i]);
             if (d > depth) above[b.parent].add(added[i]);
-            if (d == ripeness.depth && b.node->statistics().count >= ripeness.points)
-                filled.ripe.push_back(b.begin->way);
+            if (d == dense_rule.depth && b.node->statistics().count >= dense_rule.points)
+                filled.dense.push_back(b.begin->morton);
         }
         if (d == depth) return filled;
         added.swap(above);

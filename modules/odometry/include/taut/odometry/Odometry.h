@@ -23,10 +23,11 @@ struct ScanReport
 {
     std::size_t scan_points = 0;  //!< raw points used, in range and time
     int features = 0, correspondences = 0, iterations = 0;
-    double explained = 0;  //!< of the correspondences, by their surfaces: the sum of robust weights
+    double inlier_weight =
+        0;                 //!< of the correspondences, by their surfaces: the sum of robust weights
     double usual_fit = 0;  //!< fit() of the scans before, 0 for the first
     /** Share of the correspondences that their surfaces explain; 0 without any. */
-    double fit() const { return correspondences > 0 ? explained / correspondences : 0; }
+    double fit() const { return correspondences > 0 ? inlier_weight / correspondences : 0; }
     bool converged = true;
     bool lidar_used = false;  //!< false: too few correspondences; the IMU alone moved the state
     double cost = 0, balance = 1;
@@ -101,7 +102,7 @@ class Odometry
     Vector3d previous_rate_ = Vector3d::Zero();
     /** Shares of late: of the features that are matched and explained, and of the matches that are.
      * 0: not known yet. */
-    double usual_explained_ = 0, usual_fit_ = 0;
+    double usual_inlier_share_ = 0, usual_fit_ = 0;
     MapScratch scratch_;              // of look-ups in the map
     std::vector<MapPoint> inserted_;  // with the last scan; kept, since fresh memory is slow
 };

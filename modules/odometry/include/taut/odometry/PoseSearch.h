@@ -28,7 +28,7 @@ class PoseSearch
     std::vector<Pose> bestOf(const std::vector<Pose>& poses, std::size_t count);
 
     /** How many of the points lie near a surface of the map, each counted by how near. */
-    double explained(const Pose& T_world_imu);
+    double inlierWeight(const Pose& T_world_imu);
 
  private:
     std::vector<MapPoint> scan_;

@@ -16,19 +16,19 @@ struct NavPrior
     NavState::Matrix information = NavState::Matrix::Identity();
 };
 
-/** Where a body rests, or how it went on while nothing was measured, one standard deviation each;
- * infinite: nothing is known. */
-struct RestPrior
+/** What is known of a state without a measurement: where a body rests, or how it went on through a
+ * gap. Each part has one standard deviation; infinite: nothing is known. */
+struct MotionPrior
 {
     Pose T_world_imu;
-    double sway = std::numeric_limits<double>::infinity();   //!< [m] away from there
-    double turn = std::numeric_limits<double>::infinity();   //!< [rad] about any axis
-    double speed = std::numeric_limits<double>::infinity();  //!< [m/s] other than v_world
-    Vector3d v_world = Vector3d::Zero();                     //!< [m/s]
+    double position_sigma = std::numeric_limits<double>::infinity();  //!< [m] about T_world_imu
+    double rotation_sigma = std::numeric_limits<double>::infinity();  //!< [rad] about any axis
+    double velocity_sigma = std::numeric_limits<double>::infinity();  //!< [m/s] about v_world
+    Vector3d v_world = Vector3d::Zero();                              //!< [m/s]
 };
 
 /** The cost of one scan (paper, equation 17): IMU factor, LiDAR factors, absolute bias prior,
- * what is known of a body that rests and, where the previous state is released, its prior.
+ * the motion prior and, where the previous state is released, its prior.
  * Unknowns: (x_{k-1}, x_k), or x_k alone. */
 class ScanProblem : public LeastSquaresProblem
 {
@@ -64,9 +64,9 @@ class ScanProblem : public LeastSquaresProblem
         linearized_ = false;
     }
     /** What is known of the body at t_k if it rests. */
-    void setRest(const RestPrior& rest)
+    void setMotionPrior(const MotionPrior& prior)
     {
-        rest_ = rest;
+        motion_prior_ = prior;
         linearized_ = false;
     }
     /** Without LiDAR the problem is prediction and prior alone. */
@@ -105,6 +105,6 @@ class ScanProblem : public LeastSquaresProblem
     bool linearized_ = false;                // at the current estimate, noise and correspondences
     double balance_ = 1;
     bool use_lidar_ = true;
-    RestPrior rest_;
+    MotionPrior motion_prior_;
 };
 }  // namespace taut

@@ -52,9 +52,9 @@ struct Initialization
 {
     NavEstimate estimate;  //!< state at the start of the rest (or of the data), with its covariance
     bool at_rest = true;
-    double rest_duration = 0;  //!< [s] of data used
-    double sway = 0;           //!< [m] that the body is away from the origin while it rests there
-    ImuNoise measured_noise;   //!< white noise densities seen at rest; 0 if not at rest
+    double rest_duration = 0;   //!< [s] of data used
+    double position_sigma = 0;  //!< [m] how far from the origin the body may be while it rests
+    ImuNoise measured_noise;    //!< white noise densities seen at rest; 0 if not at rest
 };
 
 /** Waits for a rest and takes gravity direction and biases from it (paper, section II-D; method

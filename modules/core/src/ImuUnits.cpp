@@ -1,8 +1,9 @@
-#include "ImuUnitJudge.h"
+#include "taut/core/ImuUnits.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "taut/core/format.h"
 
 namespace taut
 {
@@ -11,18 +12,10 @@ namespace
 constexpr Duration kWindow = 1'000'000'000;
 constexpr std::size_t kFewest = 10, kMost = 10'000;  // samples of a window
 constexpr double kStandardGravity = 9.80665;         // m/s^2: what "1 g" means
-constexpr double kDegree = M_PI / 180;
 constexpr std::size_t kNoOutliers = 5;  // samples that are too fast by mistake are fewer
 constexpr double kRestTolerance = 0.5;  // m/s^2 about gravity: little else is felt
 constexpr double kClear = 3;            // so much better one unit must explain the turn, and
 constexpr double kTurn = 0.05;          // rad, this wrong the other must be
-
-std::string text(const char* format, double value)
-{
-    char buffer[160];
-    std::snprintf(buffer, sizeof buffer, format, value);
-    return buffer;
-}
 
 Vector3d meanAccel(const ImuSamples& samples, std::size_t begin, std::size_t end)
 {
@@ -44,6 +37,14 @@ double turnError(
 }
 }  // namespace
 
+Unit accelUnit(double mean_force)
+{
+    if (mean_force > 0.3 && mean_force < 3) return {"g", kStandardGravity};
+    if (mean_force >= 5 && mean_force <= 20) return {"m/s^2", 1};
+    if (mean_force > 300 && mean_force < 3000) return {"milli-g", kStandardGravity / 1000};
+    return {"unknown", 1};
+}
+
 void ImuUnitJudge::add(const ImuSample& sample)
 {
     samples_++;
@@ -59,8 +60,9 @@ void ImuUnitJudge::closeWindow()
     const std::size_t n = window_.size();
     if (n >= kFewest)
     {
-        const Vector3d before = meanAccel(window_, 0, n / 3) * accelScale();
-        const Vector3d after = meanAccel(window_, n - n / 3, n) * accelScale();
+        const double to_si = accelUnit(meanForce()).factor;
+        const Vector3d before = meanAccel(window_, 0, n / 3) * to_si;
+        const Vector3d after = meanAccel(window_, n - n / 3, n) * to_si;
         const bool gravity_alone =
             std::abs(before.norm() - kGravityWorld.norm()) < kRestTolerance &&
             std::abs(after.norm() - kGravityWorld.norm()) < kRestTolerance;
@@ -73,36 +75,31 @@ void ImuUnitJudge::closeWindow()
     window_.clear();
 }
 
-double ImuUnitJudge::accelScale() const
+bool ImuUnitJudge::tooFastForRadians() const
 {
-    const double force = meanForce();
-    if (force > 0.3 && force < 3) return kStandardGravity;
-    if (force > 300 && force < 3000) return kStandardGravity / 1000;
-    return 1;
+    return too_fast_ >= kNoOutliers;
+}
+
+bool ImuUnitJudge::gyroInDegrees() const
+{
+    return tooFastForRadians() || seconds_deg_ > 2 * seconds_rad_;
 }
 
 ImuUnits ImuUnitJudge::units() const
 {
     ImuUnits units;
-    const double force = meanForce();
-    units.accel_scale = accelScale();
-    units.accel_fits = units.accel_scale != 1 || (force >= 5 && force <= 20);
-    if (units.accel_scale != 1) units.accel_name = units.accel_scale > 1 ? "g" : "milli-g";
-    units.accel_reason = text("its norm has a mean of %.4g", force);
-    const bool too_fast = too_fast_ >= kNoOutliers;
-    if (too_fast || seconds_deg_ > 2 * seconds_rad_)
+    units.accel = accelUnit(meanForce());
+    units.accel_reason = format("its norm has a mean of %.4g", meanForce());
+    if (gyroInDegrees())
     {
-        units.gyro_name = "deg/s";
-        units.gyro_scale = kDegree;
+        units.gyro = {"deg/s", kDegree};
         units.gyro_reason =
-            too_fast ? text("%.0f are too high for rad/s", static_cast<double>(too_fast_))
-                     : text(
-                           "gravity turns as deg/s say, not as rad/s, in %.0f s",
-                           static_cast<double>(seconds_deg_));
+            tooFastForRadians()
+                ? format("%zu are too high for rad/s", too_fast_)
+                : format("gravity turns as deg/s say, not as rad/s, in %zu s", seconds_deg_);
     }
     else if (seconds_rad_ > 0)
-        units.gyro_reason =
-            text("gravity turns as rad/s say in %.0f s", static_cast<double>(seconds_rad_));
+        units.gyro_reason = format("gravity turns as rad/s say in %zu s", seconds_rad_);
     else
         units.gyro_reason = "nothing speaks against it";
     return units;
