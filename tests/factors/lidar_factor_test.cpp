@@ -134,7 +134,7 @@ TEST_F(LidarFactorTest, AFeatureIsExplainedByItsNoiseAlone)
             c.point = seen[i] + sigmas * std::hypot(noise.sigma, c.sigma) * off;
         }
         lidar.setCorrespondences(correspondences, path, predicted, 1);
-        return lidar.explained(path);
+        return lidar.inlierWeight(path);
     };
     const auto matched = static_cast<double>(std::count_if(
         correspondences.begin(), correspondences.end(),

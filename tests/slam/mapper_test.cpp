@@ -76,7 +76,7 @@ class AMapper : public ::testing::Test
     static std::map<Time, Pose> pathOf(const Mapper& mapper)
     {
         std::map<Time, Pose> path;
-        mapper.forPath([&](Time t, const Pose& pose) { path[t] = pose; });
+        mapper.forPath(mapper.ownRun(), [&](Time t, const Pose& pose) { path[t] = pose; });
         return path;
     }
 
@@ -321,6 +321,29 @@ TEST_F(AKnownMap, WithThingsMovedIsRecognised)
     const auto mapper = second({folder / "first", false, {}}, 17, 40, moved);
     EXPECT_FALSE(mapper->isApart());
     EXPECT_LT(errorOf(pathOf(*mapper)), 0.05);
+}
+
+TEST_F(AKnownMap, IsJoinedWithARunThatWasMadeForItself)
+{
+    mapTheRing();
+    std::filesystem::create_directories(folder / "alone");
+    Mapper alone(config, folder / "alone/submaps", *executor, {});
+    go(alone, 17, 60, ring(), 5);
+    writeG2o(folder / "alone/graph.g2o", alone.resultGraph());
+
+    Mapper both(config, folder / "both/submaps", *executor, {});
+    both.use({folder / "first", true, {}});
+    both.addRun(folder / "alone");
+    both.finish();
+    EXPECT_FALSE(both.isApart());
+    const std::vector<Mapper::Run> parts = both.runs();
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_EQ(parts[1].end - parts[1].begin, alone.submaps());
+    EXPECT_EQ(both.resultGraph().vertices.size(), parts[1].end);
+    std::map<Time, Pose> path;
+    both.forPath(parts[1], [&](Time t, const Pose& pose) { path[t] = pose; });
+    EXPECT_EQ(path.size(), truth.size());
+    EXPECT_LT(errorOf(path), 0.02);  // in the frame of the first run
 }
 
 TEST_F(AKnownMap, OfAnotherPlaceIsNotRecognised)

@@ -41,6 +41,7 @@ Submap anySubmap(VertexId id)
     {
         KeyScan key;
         key.T_submap_sensor = {expSO3(random.vector(1)), random.vector(10)};
+        key.scan = static_cast<std::uint16_t>(2 * i + 1);
         key.blur = 0.1 * i;
         for (int k = 0; k < 500; k++) key.image.add(random.vector(9));
         s.key_scans.push_back(key);
@@ -80,6 +81,7 @@ void expectSame(const Submap& a, const Submap& b)
     for (std::size_t i = 0; i < a.key_scans.size(); i++)
     {
         EXPECT_TRUE(sameBits(a.key_scans[i].T_submap_sensor, b.key_scans[i].T_submap_sensor));
+        EXPECT_EQ(a.key_scans[i].scan, b.key_scans[i].scan);
         EXPECT_EQ(a.key_scans[i].blur, b.key_scans[i].blur);
         EXPECT_EQ(a.key_scans[i].image.cells(), b.key_scans[i].image.cells());
     }
@@ -140,7 +142,7 @@ TEST(ASubmapFile, ThatIsDamagedIsRefused)
         EXPECT_NE(faultOf(path), "") << i << " at " << at;
     }
     std::string newer = good;
-    newer[7] = '2';
+    newer[7] = '9';
     write(path, newer);
     EXPECT_NE(faultOf(path).find("another version"), std::string::npos) << faultOf(path);
     write(path, "");

@@ -19,6 +19,19 @@ constexpr double kInverseCell = 2;      // [1/m]
 constexpr double kConflictShare = 0.6;  // of the points of a cell
 }  // namespace
 
+Visibility visibilityOf(const Vector3d& point, const Vector3d& normal, const KeyScan& key)
+{
+    const std::optional<double> nearest = key.image.nearestAround(point);
+    if (!nearest) return Visibility::Unknown;
+    const double range = point.norm();
+    const double cosine = std::abs(normal.dot(point)) / range;
+    const double margin = kMargin + kMarginShare * range + key.blur;
+    const double slanted = margin + kCell * range / std::max(cosine, kGrazing);
+    if (std::abs(range - *nearest) < margin) return Visibility::Surface;
+    if (range >= *nearest - slanted) return Visibility::Unknown;
+    return cosine > kGrazing ? Visibility::Free : Visibility::Past;
+}
+
 std::vector<Visibility> visibilityOf(
     const std::vector<MapPoint>& points, const std::vector<Vector3d>& normals,
     const Pose& T_submap_other, const Submap& submap)
@@ -30,17 +43,9 @@ std::vector<Visibility> visibilityOf(
         for (std::size_t i = 0; i < points.size(); i++)
         {
             if (seen[i] == Visibility::Surface) continue;
-            const Vector3d ray = T_sensor_other * points[i].position;
-            const double range = ray.norm();
-            const std::optional<double> nearest = key.image.nearestAround(ray);
-            if (!nearest) continue;
-            const double cosine = std::abs((T_sensor_other.R * normals[i]).dot(ray)) / range;
-            const double margin = kMargin + kMarginShare * range + key.blur;
-            const double slanted = margin + kCell * range / std::max(cosine, kGrazing);
-            if (std::abs(range - *nearest) < margin)
-                seen[i] = Visibility::Surface;
-            else if (range < *nearest - slanted && cosine > kGrazing)
-                seen[i] = Visibility::Free;
+            const Visibility by_key = visibilityOf(
+                T_sensor_other * points[i].position, T_sensor_other.R * normals[i], key);
+            if (by_key == Visibility::Surface || by_key == Visibility::Free) seen[i] = by_key;
         }
     }
     return seen;

@@ -80,7 +80,7 @@ SubmapFit bestFit(
         const std::vector<MapPoint> glance = everyNth(points, kGlance);
         std::vector<std::pair<double, std::size_t>> ranked;
         for (std::size_t i = 0; i < starts.size(); i++)
-            ranked.emplace_back(-registration.explained(glance, starts[i], kReach), i);
+            ranked.emplace_back(-registration.inlierWeight(glance, starts[i], kReach), i);
         std::sort(ranked.begin(), ranked.end());
         std::vector<Pose> best;
         for (std::size_t i = 0; i < kBest; i++) best.push_back(starts[ranked[i].second]);

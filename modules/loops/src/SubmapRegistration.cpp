@@ -129,7 +129,7 @@ SubmapFit SubmapRegistration::align(
     return fit;
 }
 
-double SubmapRegistration::explained(
+double SubmapRegistration::inlierWeight(
     const std::vector<MapPoint>& points, const Pose& T_from_to, double width)
 {
     match(points, T_from_to);

@@ -1,5 +1,7 @@
 #include "taut/session/MapExport.h"
 
+#include <filesystem>
+
 namespace taut
 {
 namespace
@@ -50,6 +52,7 @@ void MapExport::add(const NavState& state, const std::vector<Vector3d>& points_w
         voxels_ = voxels_.coarser();
         spacing_ *= 2;
     }
+    scans_.emplace_back(state.t, ply_.size());
     for (const Vector3d& p : points_world) addPoint(p);
     if (points_world.empty() || !isKey(state)) return;
     last_key_ = state;
@@ -68,5 +71,48 @@ void MapExport::finish(const WarningSink& warn)
     occupancy_resolution_ = map.resolution();
     map.writeOt(folder_ + "/map.ot");
     map.writeBt(folder_ + "/map.bt");
+}
+
+void MapExport::moveTo(const std::string& folder)
+{
+    for (const char* name : {"/map.ply", "/map.ot", "/map.bt"})
+        std::filesystem::rename(folder_ + name, folder + name);
+    folder_ = folder;
+}
+
+void MapExport::forPoints(const std::function<void(Time, const Vector3d&)>& visit) const
+{
+    PlyReader points(folder_ + "/map.ply");
+    std::vector<double> row;
+    for (std::size_t i = 0; i < scans_.size(); i++)
+    {
+        const std::size_t end = i + 1 < scans_.size() ? scans_[i + 1].second : ply_.size();
+        for (std::size_t k = scans_[i].second; k < end && points.next(row); k++)
+            visit(scans_[i].first, {row[0], row[1], row[2]});
+    }
+}
+
+std::size_t MapExport::takeOut(const std::function<bool(const Vector3d&)>& gone)
+{
+    const std::string whole = folder_ + "/map.ply", part = whole + ".part";
+    PlyReader points(whole);
+    PlyPointWriter stays(part), moved(folder_ + "/map_moved.ply");
+    for (std::vector<double> row; points.next(row);)
+    {
+        const Vector3d p(row[0], row[1], row[2]);
+        (gone(p) ? moved : stays).append({p.cast<float>(), static_cast<float>(row[3])});
+    }
+    stays.close();
+    moved.close();
+    taken_out_ = moved.size();
+    if (taken_out_ == 0)
+    {
+        std::filesystem::remove(part);
+        std::filesystem::remove(folder_ + "/map_moved.ply");
+        return 0;
+    }
+    std::filesystem::rename(part, whole);
+    sample_.removeIf([&](const Eigen::Vector3f& p) { return gone(p.cast<double>()); });
+    return taken_out_;
 }
 }  // namespace taut

@@ -48,7 +48,9 @@ nlohmann::ordered_json slamOf(const Metrics::Summary& s)
         {"undistorted_again", s.second_pass},
         {"drift_scale", s.drift_scale},
         {"seconds", s.slam_seconds},
-        {"second_pass_s", s.second_pass_seconds}};
+        {"second_pass_s", s.second_pass_seconds},
+        {"moved_points", s.moved_points},
+        {"moved_s", s.moved_seconds}};
 }
 }  // namespace
 

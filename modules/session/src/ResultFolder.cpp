@@ -18,6 +18,7 @@ constexpr const char* kResults[] = {
     "timing.csv",
     "undistorted.points",
     "map.ply",
+    "map_moved.ply",
     "map.ot",
     "map.bt",
     "map.simplemap",
@@ -29,6 +30,14 @@ constexpr const char* kResults[] = {
     "snapshot_top.png",
     "snapshot_oblique.png",
     "snapshot_follow.png"};
+
+/** Of a merge: one for each run. */
+bool isTrajectoryOfRun(const fs::path& path)
+{
+    const std::string stem = path.stem().string(), begin = "trajectory_";
+    return path.extension() == ".tum" && stem.size() > begin.size() && stem.rfind(begin, 0) == 0 &&
+           stem.find_first_not_of("0123456789", begin.size()) == std::string::npos;
+}
 
 bool isThere(const fs::path& path)
 {
@@ -101,10 +110,12 @@ void prepareResultFolder(
     if (isMarked(folder))
     {
         for (const char* name : kResults) fs::remove(folder / name);
+        for (const auto& entry : fs::directory_iterator(folder))
+            if (isTrajectoryOfRun(entry.path())) fs::remove(entry.path());
         removeSubmaps(folder);
     }
     std::ofstream marker(folder / kMarker);
-    marker << "Results of taut-slam, which `taut-slam -w` removes.\n";
+    marker << "Results of taut, which -w removes.\n";
     if (!marker) throw std::runtime_error("cannot write to '" + folder_name + "'");
 }
 }  // namespace taut

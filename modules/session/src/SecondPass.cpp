@@ -46,11 +46,11 @@ bool undistortAgain(
     return true;
 }
 
-void moveSubmaps(const Mapper& mapper, const std::vector<Pose>& path, MapExport& map)
+void moveSubmaps(
+    const Mapper& mapper, const Mapper::Run& run, const std::vector<Pose>& path, MapExport& map)
 {
     std::size_t first = 0;  // of the submap, in the path
-    for (std::size_t v = mapper.graph().vertices.size() - mapper.submaps();
-         v < mapper.graph().vertices.size(); v++)
+    for (std::size_t v = run.begin; v < run.end; v++)
     {
         const auto submap = mapper.submap(mapper.graph().vertices[v].id);
         std::vector<std::vector<Vector3d>> by_scan(submap->scans.size());

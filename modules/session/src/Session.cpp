@@ -6,6 +6,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "drawViews.h"
+#include "takeOutMovedThings.h"
 #include "taut/core/format.h"
 #include "taut/graph/G2oFile.h"
 #include "taut/session/ResultFolder.h"
@@ -202,7 +204,6 @@ SessionOutcome Session::finish(const StreamProgress& log, bool incomplete, bool 
 void Session::closeLoops()
 {
     if (!mapper_) return;
-    const auto begin = std::chrono::steady_clock::now();
     const double slam_before = mapper_->seconds();
     mapper_->finish();
     wall_seconds_ += mapper_->seconds() - slam_before;
@@ -213,11 +214,29 @@ void Session::closeLoops()
     writeLoops((folder / "loops.csv").string(), mapper_->loops());
     mapper_->writeClouds();
     writeSimpleMap((folder / "map.simplemap").string(), *mapper_);
-    if (!mapper_->moved()) return;
+    if (mapper_->moved()) takeCorrectedPath();
+    takeOutMovedThings();
+}
+
+void Session::takeCorrectedPath()
+{
+    const auto begin = std::chrono::steady_clock::now();
     std::vector<StampedPose> path;
-    mapper_->forPath([&](Time t, const Pose& pose) { path.push_back({t, pose}); });
+    mapper_->forPath(
+        mapper_->ownRun(),
+        [&](Time t, const Pose& pose) {
+            path.push_back({t, pose});
+        });
     rewriteAlong(path);
     second_pass_seconds_ = secondsSince(begin);
+}
+
+/* What was there and has gone is left out of the map. */
+void Session::takeOutMovedThings()
+{
+    const auto begin = std::chrono::steady_clock::now();
+    moved_points_ = taut::takeOutMovedThings(*mapper_, *map_, executor_);
+    moved_seconds_ = secondsSince(begin);
 }
 
 void Session::rewriteAlong(const std::vector<StampedPose>& path)
@@ -244,11 +263,10 @@ void Session::rewriteAlong(const std::vector<StampedPose>& path)
     if (!undistorted_again_)
     {
         map = anew();
-        moveSubmaps(*mapper_, poses, *map);
+        moveSubmaps(*mapper_, mapper_->ownRun(), poses, *map);
     }
     map->finish(warnings_.sink());
-    for (const char* name : {"map.ply", "map.ot", "map.bt"})
-        fs::rename(beside / name, folder / name);
+    map->moveTo(config_.folder);
     fs::remove(beside);
     map_ = std::move(map);
 }
@@ -290,23 +308,9 @@ std::vector<std::string> Session::caption() const
 
 bool Session::drawPictures() const
 {
-    try
-    {
-        const std::unique_ptr<Renderer> renderer = config_.method.renderer.create();
-        RenderScene scene{map_->sample(), path_->sample(), caption()};
-        if (mapper_) scene.loops = mapper_->joinedPlaces();
-        for (const View view : kAllViews)
-            renderer->render(
-                scene, view,
-                (fs::path(config_.folder) / ("snapshot_" + std::string(nameOf(view)) + ".png"))
-                    .string());
-        return true;
-    }
-    catch (const std::exception& e)
-    {
-        warnings_.add({0, "no_pictures", e.what()});
-        return false;
-    }
+    RenderScene scene{map_->sample(), path_->sample(), caption()};
+    if (mapper_) scene.loops = mapper_->joinedPlaces();
+    return drawViews(config_.method.renderer, scene, config_.folder, warnings_);
 }
 
 void Session::writeMetrics(const StreamProgress& log, bool incomplete, bool interrupted)
@@ -330,6 +334,8 @@ void Session::writeMetrics(const StreamProgress& log, bool incomplete, bool inte
     s.with_slam = mapper_ != nullptr;
     s.second_pass = undistorted_again_;
     s.second_pass_seconds = second_pass_seconds_;
+    s.moved_points = moved_points_;
+    s.moved_seconds = moved_seconds_;
     if (mapper_)
     {
         const auto count = [this](Verdict verdict)

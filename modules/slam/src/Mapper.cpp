@@ -61,6 +61,34 @@ const Pose& poseIn(const PoseGraph& graph, VertexId id)
         ->T_world_submap;
 }
 
+/** Of the results in a folder. */
+PoseGraph readGraph(const std::string& folder)
+{
+    PoseGraph graph = readG2o((fs::path(folder) / "graph.g2o").string());
+    const auto ascending = [](const GraphVertex& a, const GraphVertex& b) { return a.id < b.id; };
+    if (!std::is_sorted(graph.vertices.begin(), graph.vertices.end(), ascending))
+        throw std::runtime_error("the map in '" + folder + "' is none of taut's");
+    if (graph.vertices.empty())
+        throw std::runtime_error("the map in '" + folder + "' has no submaps");
+    return graph;
+}
+
+std::string submapFile(const std::string& folder, VertexId id)
+{
+    return (fs::path(folder) / "submaps" / format("%05lld.tsm", static_cast<long long>(id)))
+        .string();
+}
+
+/** Of the results in a folder. */
+Submap readSubmapOf(const std::string& folder, VertexId id)
+{
+    Submap submap = readSubmap(submapFile(folder, id));
+    if (submap.id != id)
+        throw std::runtime_error(
+            "'" + submapFile(folder, id) + "' is another submap than its name says");
+    return submap;
+}
+
 /** Where the odometry has the next submap. */
 Pose nextInFrameOf(const Submap& submap, const Submap& next)
 {
@@ -107,40 +135,73 @@ Mapper::Mapper(const SlamConfig& config, std::string folder, Executor& executor,
 
 void Mapper::use(const KnownMap& map)
 {
-    const PoseGraph known = readG2o((fs::path(map.folder) / "graph.g2o").string());
-    const auto ascending = [](const GraphVertex& a, const GraphVertex& b) { return a.id < b.id; };
-    if (!std::is_sorted(known.vertices.begin(), known.vertices.end(), ascending))
-        throw std::runtime_error("the map in '" + map.folder + "' is none of taut's");
-    if (known.vertices.empty())
-        throw std::runtime_error("the map in '" + map.folder + "' has no submaps");
-    const std::string submaps = (fs::path(map.folder) / "submaps").string();
+    PoseGraph known = readGraph(map.folder);
     known_ = map;
-    double path = 0;
-    for (const GraphVertex& vertex : known.vertices)
+    for (GraphVertex& vertex : known.vertices)
     {
-        const std::string name = format("/%05lld.tsm", static_cast<long long>(vertex.id));
-        const Submap submap = readSubmap(submaps + name);
-        if (submap.id != vertex.id)
-            throw std::runtime_error(
-                "'" + submaps + name + "' is another submap than its name says");
+        const Submap submap = readSubmapOf(map.folder, vertex.id);
         if (map.extend)
-            fs::copy_file(submaps + name, folder_ + name, fs::copy_options::overwrite_existing);
-        graph_.vertices.push_back(vertex);
-        if (!map.extend) graph_.vertices.back().fixed = true;
-        first_own_id_ = std::max(first_own_id_, vertex.id + 1);
-        path = std::max(path, submap.path_end);
+            fs::copy_file(
+                submapFile(map.folder, vertex.id), store_.fileOf(vertex.id),
+                fs::copy_options::overwrite_existing);
+        vertex.fixed = vertex.fixed || !map.extend;
+        own_path_begin_ = std::max(own_path_begin_, submap.path_end + kBetweenRecordings);
         places_->add(submap);
         appearance_->add(submap);
     }
-    if (map.extend)
-    {
-        graph_.relative_edges = known.relative_edges;
-        graph_.gravity_edges = known.gravity_edges;
-        weights_.assign(graph_.relative_edges.size(), 1);
-    }
-    store_.readAlsoFrom(submaps);
+    if (!map.extend) known.relative_edges = {}, known.gravity_edges = {};
+    addGraph(known, 0);
+    store_.readAlsoFrom((fs::path(map.folder) / "submaps").string());
     first_own_ = graph_.vertices.size();
-    builder_.goOnFrom(first_own_id_, path + kBetweenRecordings);
+    first_own_id_ = known.vertices.back().id + 1;
+    builder_.goOnFrom(first_own_id_, own_path_begin_);
+}
+
+/* Adds a graph whose ids grow by `shift`. */
+void Mapper::addGraph(const PoseGraph& graph, VertexId shift)
+{
+    for (GraphVertex vertex : graph.vertices)
+    {
+        vertex.id += shift;
+        graph_.vertices.push_back(vertex);
+    }
+    for (RelativeEdge edge : graph.relative_edges)
+    {
+        edge.from += shift;
+        edge.to += shift;
+        graph_.relative_edges.push_back(edge);
+        weights_.push_back(1);
+    }
+    for (GravityEdge edge : graph.gravity_edges)
+    {
+        edge.vertex += shift;
+        graph_.gravity_edges.push_back(edge);
+    }
+    covariance_.reset();
+}
+
+void Mapper::addRun(const std::string& folder)
+{
+    const Watch watch(seconds_);
+    const PoseGraph run = readGraph(folder);
+    const VertexId shift = first_own_id_;
+    for (const GraphVertex& vertex : run.vertices)
+    {
+        Submap submap = readSubmapOf(folder, vertex.id);
+        submap.id += shift;
+        submap.path_begin += own_path_begin_;
+        submap.path_end += own_path_begin_;
+        places_->add(submap);
+        appearance_->add(submap);
+        store_.add(std::move(submap));
+    }
+    addGraph(run, shift);
+    for (const GraphVertex& vertex : run.vertices)
+    {
+        searchFor(vertex.id + shift, *places_);
+        searchFor(vertex.id + shift, *appearance_);
+        weighPending();
+    }
 }
 
 void Mapper::take(Submap submap)
@@ -452,15 +513,23 @@ void Mapper::accept(LoopClosure& loop, const std::string& reason)
                  static_cast<long long>(loop.from), static_cast<long long>(loop.to))});
 }
 
+/* Whether the submap at a position of the graph goes on where the one before it ended. */
+bool Mapper::followsTheLast(std::size_t position) const
+{
+    const auto before = store_.at(graph_.vertices[position - 1].id);
+    return before->path_end == store_.at(graph_.vertices[position].id)->path_begin;
+}
+
 PoseGraph Mapper::odometryAlone() const
 {
     PoseGraph alone = graph_;
     for (RelativeEdge& edge : alone.relative_edges) edge.enabled = edge.kind == EdgeKind::Odometry;
     for (std::size_t i = first_own_ + 1; i < alone.vertices.size(); i++)
     {
-        const auto before = store_.at(alone.vertices[i - 1].id);
-        alone.vertices[i].T_world_submap = alone.vertices[i - 1].T_world_submap *
-                                           nextInFrameOf(*before, *store_.at(alone.vertices[i].id));
+        const VertexId before = alone.vertices[i - 1].id, now = alone.vertices[i].id;
+        const Pose step = followsTheLast(i) ? nextInFrameOf(*store_.at(before), *store_.at(now))
+                                            : between(before, now);
+        alone.vertices[i].T_world_submap = alone.vertices[i - 1].T_world_submap * step;
     }
     return alone;
 }
@@ -514,14 +583,26 @@ void Mapper::weighGaps()
             loop.reason = "the odometry is already as near as the loop can tell: nothing moves";
 }
 
-void Mapper::forPath(const std::function<void(Time, const Pose&)>& visit) const
+std::vector<Mapper::Run> Mapper::runs() const
 {
-    for (std::size_t i = first_own_; i < graph_.vertices.size(); i++)
+    if (!known_ || !known_->extend) return {ownRun()};
+    std::vector<Run> runs;
+    for (std::size_t i = 0; i < graph_.vertices.size(); i++)
+    {
+        if (i == 0 || !followsTheLast(i)) runs.push_back({i, i});
+        runs.back().end = i + 1;
+    }
+    return runs;
+}
+
+void Mapper::forPath(const Run& run, const std::function<void(Time, const Pose&)>& visit) const
+{
+    for (std::size_t i = run.begin; i < run.end; i++)
     {
         const GraphVertex& vertex = graph_.vertices[i];
         const auto submap = store_.at(vertex.id);
         std::vector<Pose> poses;
-        if (i + 1 < graph_.vertices.size())
+        if (i + 1 < run.end)
         {
             const GraphVertex& next = graph_.vertices[i + 1];
             poses = correctedPoses(
@@ -533,7 +614,7 @@ void Mapper::forPath(const std::function<void(Time, const Pose&)>& visit) const
             poses = correctedPoses(*submap, vertex.T_world_submap);
         }
         // The first state is the last of the submap before.
-        for (std::size_t k = i == first_own_ ? 0 : 1; k < poses.size(); k++)
+        for (std::size_t k = i == run.begin ? 0 : 1; k < poses.size(); k++)
             visit(submap->scans[k].t, poses[k]);
     }
 }

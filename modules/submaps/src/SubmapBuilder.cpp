@@ -231,6 +231,7 @@ void SubmapBuilder::addKeyScan(
     const std::vector<Vector3d>& points_world, const Pose& T_world_sensor, double blur)
 {
     KeyScan key;
+    key.scan = static_cast<std::uint16_t>(submap_->scans.size() - 1);
     key.T_submap_sensor = submap_->T_world_submap.inverse() * T_world_sensor;
     key.blur = blur;
     const Pose T_sensor_world = T_world_sensor.inverse();

@@ -16,7 +16,7 @@ namespace taut
 {
 namespace
 {
-constexpr char kMagic[] = "TAUTSUB1";
+constexpr char kMagic[] = "TAUTSUB2";
 constexpr std::size_t kMagicSize = sizeof(kMagic) - 1;
 constexpr std::size_t kHeaderSize = kMagicSize + 8;
 constexpr std::uint32_t kLargest = 1u << 30;  // [bytes] of a submap; no real one is so large
@@ -114,6 +114,7 @@ std::string encode(const Submap& s)
     out.size(s.key_scans.size());
     for (const KeyScan& key : s.key_scans)
     {
+        out.number(key.scan);
         out.pose(key.T_submap_sensor);
         out.number(key.blur);
         for (const std::uint16_t cell : key.image.cells()) out.number(cell);
@@ -150,9 +151,10 @@ Submap decode(const std::string& bytes)
         in.number(p.scan);
         if (p.scan >= s.scans.size()) throw std::runtime_error("a point names a scan that is none");
     }
-    s.key_scans.resize(in.size(13 * 8 + 2 * RangeImage::kColumns * RangeImage::kRows));
+    s.key_scans.resize(in.size(2 + 13 * 8 + 2 * RangeImage::kColumns * RangeImage::kRows));
     for (KeyScan& key : s.key_scans)
     {
+        in.number(key.scan);
         in.pose(key.T_submap_sensor);
         in.number(key.blur);
         for (std::uint16_t& cell : key.image.cells()) in.number(cell);

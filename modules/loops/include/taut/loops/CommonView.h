@@ -11,16 +11,20 @@ namespace taut
 enum class Visibility : std::uint8_t
 {
     Unknown,  //!< out of view, or hidden behind something
+    Past,     //!< rays passed, but so flat along the surface that it may still be there
     Surface,  //!< where a ray ended
     Free,     //!< where rays passed
 };
 
+/** What one key scan says of a point (frame of the sensor): Free if the ray in its direction passed
+ * it well before it ended. How well: by as much as the range may change within a cell of the image
+ * on the surface that the point is of, whose normal is given (the same frame; zero: it is of none).
+ * Points of no surface, such as leaves, which rays pass through, are never Free but Past. */
+Visibility visibilityOf(const Vector3d& point, const Vector3d& normal, const KeyScan& key);
+
 /** Looks at points with the key scans of a submap: [i] of points[i], whose position is
- * T_submap_other
- * * points[i].position. A point is Free if a ray passed it well before its end, and none ended
- * there. How well: by as much as the range may change within a cell of the image on the surface
- * that the point is of, whose normal is normals[i] (frame of the points; zero: it is of none).
- * Points of no surface, such as leaves, which rays pass through, are never Free. */
+ * T_submap_other * points[i].position, and whose normal normals[i] is in the frame of the points. A
+ * point is Free if a key scan says so and none sees a surface there. */
 std::vector<Visibility> visibilityOf(
     const std::vector<MapPoint>& points, const std::vector<Vector3d>& normals,
     const Pose& T_submap_other, const Submap& submap);

@@ -43,7 +43,7 @@ class SubmapRegistration
     SubmapFit align(const std::vector<MapPoint>& points, const Pose& guess, double width);
 
     /** How many of the points a surface explains, by a kernel of that width [m]. */
-    double explained(const std::vector<MapPoint>& points, const Pose& T_from_to, double width);
+    double inlierWeight(const std::vector<MapPoint>& points, const Pose& T_from_to, double width);
 
     /** Normals of the surfaces that points of submap `from` itself lie on, in its frame; zero where
      * there is none. */

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,9 +39,20 @@ class MapExport
     /** Completes map.ply, map.ot and map.bt. */
     void finish(const WarningSink& warn);
 
+    /** After finish(): moves the files to another folder of the same file system. */
+    void moveTo(const std::string& folder);
+
+    /** After finish(): calls `visit(t, p_world)` for every point of map.ply with the time of its
+     * scan, in the order of the scans. */
+    void forPoints(const std::function<void(Time, const Vector3d&)>& visit) const;
+
+    /** After finish(): moves the points that `gone` tells (world frame) from map.ply to
+     * map_moved.ply, which is there only if it has points. Gives their number. */
+    std::size_t takeOut(const std::function<bool(const Vector3d&)>& gone);
+
     /** An even sample of the points of map.ply. */
     const std::vector<Eigen::Vector3f>& sample() const { return sample_.items(); }
-    std::size_t points() const { return ply_.size(); }
+    std::size_t points() const { return ply_.size() - taken_out_; }
     std::size_t keyScans() const { return key_scans_; }
     double occupancyResolution() const { return occupancy_resolution_; }
 
@@ -55,8 +67,9 @@ class MapExport
     ThinnedSample<Eigen::Vector3f> sample_;
     double spacing_;  // [m] of new points: grows where the map is huge, so that memory does not
     OccupancyWorker occupancy_;
+    std::vector<std::pair<Time, std::size_t>> scans_;  // and the number of points before each
     NavState last_key_;
-    std::size_t key_scans_ = 0;
+    std::size_t key_scans_ = 0, taken_out_ = 0;
     double occupancy_resolution_ = 0;
 };
 }  // namespace taut

@@ -22,7 +22,8 @@ bool undistortAgain(
     MeasurementStream& log, const OdometryConfig& config, const std::vector<SweepRecord>& records,
     MapExport& map, const std::function<bool(double)>& go_on);
 
-/** Where the recording is not there any more: the points of the submaps, which each scan takes
- * along to its corrected pose. */
-void moveSubmaps(const Mapper& mapper, const std::vector<Pose>& path, MapExport& map);
+/** Where the recording is not there any more: the points of a run's submaps, which each scan takes
+ * along to its corrected pose. `path`: all of the run's. */
+void moveSubmaps(
+    const Mapper& mapper, const Mapper::Run& run, const std::vector<Pose>& path, MapExport& map);
 }  // namespace taut

@@ -92,6 +92,8 @@ class Session
     void takeRefined(const Refined& refined);
     void closeLoops();
     bool streamAgain(const std::vector<SweepRecord>& records, MapExport& map);
+    void takeCorrectedPath();
+    void takeOutMovedThings();
     void rewriteAlong(const std::vector<StampedPose>& path);
     std::string processAll(
         MeasurementStream& log, const std::function<bool(double)>& go_on, bool& interrupted);
@@ -115,7 +117,8 @@ class Session
     Reopen reopen_;
     std::function<bool(double)> go_on_;
     bool second_pass_ = false, undistorted_again_ = false, interrupted_again_ = false;
-    double second_pass_seconds_ = 0;
+    double second_pass_seconds_ = 0, moved_seconds_ = 0;
+    std::size_t moved_points_ = 0;
     Pipeline pipeline_;
     double wall_seconds_ = 0;
 };

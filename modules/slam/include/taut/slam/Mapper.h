@@ -38,6 +38,11 @@ class Mapper
      * what cannot be used. */
     void use(const KnownMap& map);
 
+    /** Takes the submaps and the graph of an earlier run as this run's, instead of a path that is
+     * told state by state: looks for the loops that join them to the known map. `folder`: of its
+     * results. Then finish(). Throws std::runtime_error that names what cannot be used. */
+    void addRun(const std::string& folder);
+
     /** True if a known map was given and no place of it was recognised. */
     bool isApart() const { return known_ && !joined_; }
 
@@ -76,9 +81,19 @@ class Mapper
     double scaleOfDrift() const { return drift_scale_; }
     double seconds() const { return seconds_; }  //!< spent on loops and graph
 
-    /** Calls `visit(t, T_world_imu)` for every state of the corrected path, in the order of time.
-     * The first of all is the state that the path began with. Reads the submaps again. */
-    void forPath(const std::function<void(Time, const Pose&)>& visit) const;
+    /** Submaps that follow one another on the path of one recording: positions in graph(). */
+    struct Run
+    {
+        std::size_t begin = 0, end = 0;
+    };
+    /** This run. */
+    Run ownRun() const { return {first_own_, graph_.vertices.size()}; }
+    /** All runs that resultGraph() holds, the known map's first. */
+    std::vector<Run> runs() const;
+
+    /** Calls `visit(t, T_world_imu)` for every state of the corrected path of a run, in the order
+     * of time. The first of all is the state that the path began with. Reads the submaps again. */
+    void forPath(const Run& run, const std::function<void(Time, const Pose&)>& visit) const;
 
     /** Of each loop that is believed: where the body was at the begin of both submaps, world [m].
      */
@@ -90,6 +105,9 @@ class Mapper
 
     /** Submap `id` from the disk or from memory. */
     std::shared_ptr<const Submap> submap(VertexId id) const { return store_.at(id); }
+
+    /** The same with a map of its points, in its frame. */
+    SubmapView viewOf(VertexId id);
 
  private:
     void take(Submap submap);
@@ -111,12 +129,13 @@ class Mapper
     void join(const Joints& joints);
     void judgeStart(VertexId id);
     bool isOwn(VertexId id) const { return id >= first_own_id_; }
+    void addGraph(const PoseGraph& graph, VertexId shift);
+    bool followsTheLast(std::size_t position) const;
     PoseGraph odometryAlone() const;
     bool agrees(const LoopClosure& a, const LoopClosure& b);
     void accept(LoopClosure& loop, const std::string& reason);
     std::optional<Matrix6d> covarianceOf(VertexId from, VertexId to);
     Pose between(VertexId from, VertexId to) const;
-    SubmapView viewOf(VertexId id);
     const Pose& poseOf(VertexId id) const;
 
     SlamConfig config_;
@@ -128,6 +147,7 @@ class Mapper
     bool joined_ = false;
     std::size_t first_own_ = 0;  // position of this run's first vertex
     VertexId first_own_id_ = 0;
+    double own_path_begin_ = 0;  // [m] on the way through all recordings
     std::unique_ptr<PlaceRecognizer> places_, appearance_;
     std::unique_ptr<GraphOptimizer> optimizer_;
     LoopJudge judge_;
