@@ -17,6 +17,7 @@ namespace
 struct Options
 {
     std::string truth, estimate, kitti_times, points, points_truth, plot_folder, loops;
+    std::string frame_truth, frame_estimate;
     taut::PlotFormat plot_format = taut::PlotFormat::Svg;
     bool json = false;
     double from_time = 0;  // [s] since the first true pose
@@ -54,7 +55,7 @@ std::optional<Options> parse(int argc, char** argv)
 {
     TCLAP::CmdLine cmd("Scores an estimated trajectory against the truth", ' ', TAUT_VERSION);
     TCLAP::ValueArg<std::string> truth(
-        "", "truth", "True trajectory (TUM file)", true, "", "FILE", cmd);
+        "", "truth", "True trajectory (TUM file, or EuRoC's data.csv)", true, "", "FILE", cmd);
     TCLAP::ValueArg<std::string> estimate(
         "", "estimate", "Estimated trajectory (TUM file)", true, "", "FILE", cmd);
     TCLAP::ValueArg<std::string> kitti_times(
@@ -64,6 +65,13 @@ std::optional<Options> parse(int argc, char** argv)
     TCLAP::ValueArg<std::string> alignment(
         "", "align", "Alignment of the estimate to the truth: se3 (default), yaw or none", false,
         "se3", "NAME", cmd);
+    TCLAP::ValueArg<std::string> frame_estimate(
+        "", "frame-estimate",
+        "Trajectory of another run in the same frame, such as the known map's: the alignment is "
+        "taken from it",
+        false, "", "FILE", cmd);
+    TCLAP::ValueArg<std::string> frame_truth(
+        "", "frame-truth", "The truth of --frame-estimate", false, "", "FILE", cmd);
     TCLAP::ValueArg<double> min_coverage(
         "", "min-coverage", "Share of the truth to be covered, else refused (default 0.5)", false,
         0.5, "0..1", cmd);
@@ -101,6 +109,10 @@ std::optional<Options> parse(int argc, char** argv)
     options.kitti_times = kitti_times.getValue();
     options.json = json.getValue();
     options.score.alignment = alignmentOf(alignment.getValue());
+    options.frame_truth = frame_truth.getValue();
+    options.frame_estimate = frame_estimate.getValue();
+    if (options.frame_truth.empty() != options.frame_estimate.empty())
+        throw taut::UsageError("--frame-truth and --frame-estimate need each other");
     options.from_time = from_time.getValue();
     if (!(options.from_time >= 0)) throw taut::UsageError("--from-time is negative");
     options.score.min_coverage = min_coverage.getValue();
@@ -160,8 +172,9 @@ void run(const Options& options)
     const auto warn = [](const taut::Warning& w) { std::cerr << "warning: " << w.text << "\n"; };
     const auto read = [&](const std::string& path)
     {
-        return options.kitti_times.empty() ? taut::readTum(path, warn)
-                                           : taut::readKitti(path, options.kitti_times);
+        if (!options.kitti_times.empty()) return taut::readKitti(path, options.kitti_times);
+        const bool csv = path.size() > 4 && path.compare(path.size() - 4, 4, ".csv") == 0;
+        return csv ? taut::readEuroc(path, warn) : taut::readTum(path, warn);
     };
     taut::Trajectory truth = read(options.truth), estimate = read(options.estimate);
     taut::Time begin = 0;
@@ -171,7 +184,15 @@ void run(const Options& options)
         truth = since(begin, std::move(truth));
         estimate = since(begin, std::move(estimate));
     }
-    const taut::Scores scores = scoreTrajectory(truth, estimate, options.score, warn);
+    taut::ScoreOptions score = options.score;
+    if (!options.frame_truth.empty())
+    {
+        score.T_truth_estimate = align(
+            taut::pairPoses(read(options.frame_truth), read(options.frame_estimate)),
+            score.alignment);
+        score.alignment = taut::Alignment::Given;
+    }
+    const taut::Scores scores = scoreTrajectory(truth, estimate, score, warn);
     std::optional<taut::PointScores> points;
     if (!options.points.empty())
         points = taut::scorePoints(

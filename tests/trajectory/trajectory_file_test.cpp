@@ -182,3 +182,21 @@ TEST(KittiFile, TakesItsStampsFromAFileOfTimes)
     times.write("1\n1\n");
     EXPECT_THROW(readKitti(poses.path(), times.path()), std::runtime_error);
 }
+
+TEST(EurocFile, IsReadWithItsOrderOfTheQuaternionAndWithoutTheOtherColumns)
+{
+    const TemporaryFile file(
+        "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
+        "q_RS_z [], v_RS_R_x [m s^-1]\n"
+        "1403636580838555648,4.5,-1.25,0.5,0.6,0,0.8,0,0.1,0.2\n"
+        "1403636580843555328,4.5,-1.5,0.5,1,0,0,0,0.1,0.2\r\n");
+    const Trajectory read = readEuroc(file.path());
+    ASSERT_EQ(read.size(), 2u);
+    EXPECT_EQ(read[0].t, 1'403'636'580'838'555'648);
+    EXPECT_EQ(read[1].T_world_imu.p, Vector3d(4.5, -1.5, 0.5));
+    const Eigen::Quaterniond q(0.6, 0, 0.8, 0);
+    EXPECT_LT((read[0].T_world_imu.R - q.toRotationMatrix()).norm(), 1e-12);
+
+    const TemporaryFile in_seconds("1403636580.838,4.5,-1.25,0.5,1,0,0,0\n");
+    EXPECT_THROW(readEuroc(in_seconds.path()), std::runtime_error);
+}

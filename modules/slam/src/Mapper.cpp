@@ -439,8 +439,8 @@ void Mapper::weighJoints(bool at_the_end)
     std::set<VertexId> submaps;
     for (const std::size_t i : groups[0].loops) submaps.insert(loops_[i].to);
     const bool clearly_best = groups[0].evidence >= kClearly * second;
-    const bool alone = at_the_end && groups.size() == 1;
-    if ((submaps.size() >= 2 && clearly_best) || alone) join(groups[0]);
+    // While the run goes on there is time to hear a second submap.
+    if (clearly_best && (submaps.size() >= 2 || at_the_end)) join(groups[0]);
 }
 
 void Mapper::join(const Joints& joints)

@@ -12,7 +12,8 @@ namespace
 constexpr double kInverseVoxel = 5;     // [1/m]
 constexpr double kReach = 25;           // [m] of a look: there, a cell of a key scan is 0.7 m wide
 constexpr std::size_t kMostAround = 8;  // submaps that are asked, the nearest
-constexpr std::size_t kMostLooks = 8;   // that are remembered of a voxel
+constexpr std::size_t kMostKeyScans = 32;  // of all these
+constexpr std::size_t kMostLooks = 8;      // that are remembered of a voxel
 constexpr std::ptrdiff_t kFewestLooks = 2;
 constexpr int kSpread =
     4;  // voxels that what has gone may reach further than it was looked through
@@ -63,7 +64,7 @@ void MovedThings::add(const Vector3d& p_world, Moment moment)
 std::size_t MovedThings::decide()
 {
     for (std::size_t position = 0; position < fresh_.size(); position++)
-        lookWith(position, fresh_[position]);
+        lookAt(position, fresh_[position]);
     findLastReturns();
     for (auto& [key, voxel] : voxels_)
         voxel.gone = countAfter(voxel.through, voxel.last_return) >= kFewestLooks;
@@ -73,39 +74,51 @@ std::size_t MovedThings::decide()
 }
 
 /* Looks at what a submap saw first, with its own key scans and those of the submaps after it. */
-void MovedThings::lookWith(std::size_t position, const Fresh& fresh)
+void MovedThings::lookAt(std::size_t position, const Fresh& fresh)
 {
     std::vector<Voxel*> voxels;
     for (const std::uint64_t key : fresh) voxels.push_back(&voxels_.at(key));
     const std::vector<Vector3d> normals = normalsOf(position, fresh);
+    for (const Look& look : looksAround(position))
+    {
+        const Pose T_sensor_world = (poseOf(look.now.first) * look.key->T_submap_sensor).inverse();
+        executor_.forChunks(
+            voxels.size(), 1024,
+            [&](std::size_t, std::size_t begin, std::size_t end)
+            {
+                for (std::size_t i = begin; i < end; i++)
+                {
+                    Voxel& voxel = *voxels[i];
+                    const Vector3d p = T_sensor_world * Vector3d(voxel.point.cast<double>());
+                    if (p.squaredNorm() > square(kReach)) continue;
+                    const Visibility seen =
+                        visibilityOf(p, T_sensor_world.R * normals[i], *look.key);
+                    if (seen == Visibility::Surface)
+                        voxel.last_return = std::max(voxel.last_return, look.now);
+                    if (seen != Visibility::Free && seen != Visibility::Past) continue;
+                    remember(voxel.past, look.now);
+                    // What is no plane, such as a person, is not flat along any ray.
+                    if (seen == Visibility::Free || normals[i].isZero())
+                        remember(voxel.through, look.now);
+                }
+            });
+    }
+}
+
+/* Key scans of the submap and of those after it around, evenly thinned. */
+std::vector<MovedThings::Look> MovedThings::looksAround(std::size_t position) const
+{
+    std::vector<Look> all;
     for (const std::size_t other : around(position))
     {
         const auto submap = mapper_.submap(graph_.vertices[other].id);
         for (const KeyScan& key : submap->key_scans)
-        {
-            const Pose T_sensor_world = (poseOf(other) * key.T_submap_sensor).inverse();
-            const Moment now{other, key.scan};
-            executor_.forChunks(
-                voxels.size(), 1024,
-                [&](std::size_t, std::size_t begin, std::size_t end)
-                {
-                    for (std::size_t i = begin; i < end; i++)
-                    {
-                        Voxel& voxel = *voxels[i];
-                        const Vector3d p = T_sensor_world * Vector3d(voxel.point.cast<double>());
-                        if (p.squaredNorm() > square(kReach)) continue;
-                        const Visibility seen = visibilityOf(p, T_sensor_world.R * normals[i], key);
-                        if (seen == Visibility::Surface)
-                            voxel.last_return = std::max(voxel.last_return, now);
-                        if (seen != Visibility::Free && seen != Visibility::Past) continue;
-                        remember(voxel.past, now);
-                        // What is no plane, such as a person, is not flat along any ray.
-                        if (seen == Visibility::Free || normals[i].isZero())
-                            remember(voxel.through, now);
-                    }
-                });
-        }
+            all.push_back({submap, &key, {other, key.scan}});
     }
+    std::vector<Look> looks;
+    const std::size_t count = std::min(all.size(), kMostKeyScans);
+    for (std::size_t i = 0; i < count; i++) looks.push_back(all[i * all.size() / count]);
+    return looks;
 }
 
 std::vector<Vector3d> MovedThings::normalsOf(std::size_t position, const Fresh& fresh)

@@ -75,6 +75,8 @@ std::string nameOf(Alignment alignment)
             return "yaw";
         case Alignment::None:
             return "none";
+        case Alignment::Given:
+            return "given";
     }
     throw std::invalid_argument("not an alignment");
 }
@@ -98,6 +100,8 @@ PosePairs pairPoses(const Trajectory& truth, const Trajectory& estimate, Duratio
 
 Pose align(const PosePairs& pairs, Alignment alignment)
 {
+    if (alignment == Alignment::Given)
+        throw std::invalid_argument("a given alignment is not found again");
     if (alignment == Alignment::None) return {};
     if (pairs.empty()) throw std::runtime_error("no poses to align");
     const Moments m = momentsOf(pairs);

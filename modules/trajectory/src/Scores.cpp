@@ -30,10 +30,10 @@ void refuseTooLittle(const Scores& scores, const ScoreOptions& options)
 }
 }  // namespace
 
-AbsoluteError absoluteError(const PosePairs& pairs, Alignment alignment)
+AbsoluteError absoluteError(const PosePairs& pairs, const Pose& T_truth_estimate)
 {
     AbsoluteError out;
-    out.T_truth_estimate = align(pairs, alignment);
+    out.T_truth_estimate = T_truth_estimate;
     std::vector<double> position, rotation;
     for (const PosePair& pair : pairs)
     {
@@ -92,7 +92,9 @@ Scores scoreTrajectory(
         scores.estimate_path += (pairs[i].estimate.p - pairs[i - 1].estimate.p).norm();
     }
     scores.alignment = options.alignment;
-    scores.absolute = absoluteError(pairs, options.alignment);
+    const bool given = options.alignment == Alignment::Given;
+    scores.absolute =
+        absoluteError(pairs, given ? options.T_truth_estimate : align(pairs, options.alignment));
     for (const double seconds : options.rpe_seconds)
         scores.over_time.push_back(relativeErrorOverTime(pairs, seconds));
     for (const double metres : options.rpe_metres)

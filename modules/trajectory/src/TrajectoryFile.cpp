@@ -10,9 +10,9 @@ namespace taut
 {
 namespace
 {
-std::vector<std::string> wordsOf(const std::string& line)
+std::vector<std::string> wordsOf(const std::string& line, bool commas)
 {
-    constexpr const char* kBlank = " \t\r";
+    const char* const kBlank = commas ? " \t\r," : " \t\r";
     std::vector<std::string> words;
     for (auto begin = line.find_first_not_of(kBlank); begin != std::string::npos;)
     {
@@ -44,21 +44,22 @@ std::string formatNumber(double value, int decimals)
     return {buffer.data(), result.ptr};
 }
 
-/** Calls `body` with the words of every line that holds data; names file and line in its errors. */
+/** Calls `body` with the words of every line that holds data; names file and line in its errors.
+ * `more`: there may be more columns, and commas part them. */
 void forLines(
     const std::string& path, std::size_t columns,
-    const std::function<void(const std::vector<std::string>&)>& body)
+    const std::function<void(const std::vector<std::string>&)>& body, bool more = false)
 {
     std::ifstream file(path);
     if (!file) throw std::runtime_error("cannot read '" + path + "'");
     std::string line;
     for (std::size_t number = 1; std::getline(file, line); number++)
     {
-        const auto words = wordsOf(line);
+        const auto words = wordsOf(line, more);
         if (words.empty() || words.front().front() == '#') continue;
         try
         {
-            if (words.size() != columns)
+            if (words.size() != columns && !(more && words.size() > columns))
                 throw std::invalid_argument(
                     std::to_string(columns) + " columns expected, found " +
                     std::to_string(words.size()));
@@ -82,6 +83,29 @@ Matrix3d rotationOf(double qx, double qy, double qz, double qw)
     return q.normalized().toRotationMatrix();
 }
 
+/** The seven after the first. */
+std::array<double, 7> valuesOf(const std::vector<std::string>& words)
+{
+    std::array<double, 7> values{};
+    for (std::size_t i = 0; i < values.size(); i++) values[i] = parseNumber(words[i + 1]);
+    return values;
+}
+
+/** One stamp later than the last; the second of two equal ones is dropped with a warning. */
+void append(
+    const StampedPose& pose, Trajectory& out, const std::string& path, const WarningSink& warn)
+{
+    if (!out.empty() && pose.t < out.back().t)
+        throw std::invalid_argument(
+            "time goes backward, from " + formatSeconds(out.back().t) + " to " +
+            formatSeconds(pose.t) + " s");
+    if (out.empty() || pose.t > out.back().t)
+        out.push_back(pose);
+    else if (warn)
+        warn(
+            {pose.t, "repeated_stamp",
+             path + ": a second pose at " + formatSeconds(pose.t) + " s is dropped"});
+}
 }  // namespace
 
 std::string tumLine(const StampedPose& pose)
@@ -102,21 +126,30 @@ Trajectory readTum(const std::string& path, const WarningSink& warn)
         path, 8,
         [&](const std::vector<std::string>& words)
         {
-            const Time t = parseSeconds(words[0]);
-            std::array<double, 7> v{};
-            for (std::size_t i = 0; i < v.size(); i++) v[i] = parseNumber(words[i + 1]);
-            const Matrix3d R = rotationOf(v[3], v[4], v[5], v[6]);
-            if (!out.empty() && t < out.back().t)
-                throw std::invalid_argument(
-                    "time goes backward, from " + formatSeconds(out.back().t) + " to " +
-                    formatSeconds(t) + " s");
-            if (out.empty() || t > out.back().t)
-                out.push_back({t, {R, {v[0], v[1], v[2]}}});
-            else if (warn)
-                warn(
-                    {t, "repeated_stamp",
-                     path + ": a second pose at " + formatSeconds(t) + " s is dropped"});
+            const auto v = valuesOf(words);
+            append(
+                {parseSeconds(words[0]), {rotationOf(v[3], v[4], v[5], v[6]), {v[0], v[1], v[2]}}},
+                out, path, warn);
         });
+    return out;
+}
+
+Trajectory readEuroc(const std::string& path, const WarningSink& warn)
+{
+    Trajectory out;
+    forLines(
+        path, 8,
+        [&](const std::vector<std::string>& words)
+        {
+            Time t = 0;
+            const char* end = words[0].data() + words[0].size();
+            const auto [stop, error] = std::from_chars(words[0].data(), end, t);
+            if (stop != end || error != std::errc())
+                throw std::invalid_argument("'" + words[0] + "' is not a time in nanoseconds");
+            const auto v = valuesOf(words);
+            append({t, {rotationOf(v[4], v[5], v[6], v[3]), {v[0], v[1], v[2]}}}, out, path, warn);
+        },
+        true);
     return out;
 }
 

@@ -45,7 +45,16 @@ class MovedThings
     /** Voxels that a submap saw first. */
     using Fresh = std::vector<std::uint64_t>;
 
-    void lookWith(std::size_t position, const Fresh& fresh);
+    /** A key scan and when it was made. */
+    struct Look
+    {
+        std::shared_ptr<const Submap> submap;  // owns the key scan
+        const KeyScan* key;
+        Moment now;
+    };
+
+    void lookAt(std::size_t position, const Fresh& fresh);
+    std::vector<Look> looksAround(std::size_t position) const;
     void findLastReturns();
     void spread();
     std::vector<std::size_t> around(std::size_t position) const;

@@ -10,15 +10,16 @@ namespace taut
 /** Which difference of the two world frames is taken away before the absolute error is measured. */
 enum class Alignment
 {
-    SE3,   //!< rotation and translation (Umeyama without scale): 6 dof
-    Yaw,   //!< rotation about z and translation: 4 dof, what a LiDAR-IMU system cannot know
-    None,  //!< nothing
+    SE3,    //!< rotation and translation (Umeyama without scale): 6 dof
+    Yaw,    //!< rotation about z and translation: 4 dof, what a LiDAR-IMU system cannot know
+    None,   //!< nothing
+    Given,  //!< what is known from elsewhere
 };
 
-/** "se3", "yaw", "none". */
+/** "se3", "yaw", "none", "given". */
 std::string nameOf(Alignment alignment);
 
-/** The opposite. Throws std::invalid_argument for any other name. */
+/** The opposite, but for "given". Throws std::invalid_argument for any other name. */
 Alignment alignmentOf(const std::string& name);
 
 /** Truth and estimate at one stamp of the estimate. */
@@ -38,6 +39,6 @@ PosePairs pairPoses(
 
 /** T_truth_estimate that minimises sum |p_truth - T p_estimate|^2 over the dof of the alignment
  * (Umeyama, PAMI 1991). Throws std::runtime_error if the positions do not determine it: less than 1
- * mm of spread off a line (SE3) or in the horizontal plane (Yaw). */
+ * mm of spread off a line (SE3) or in the horizontal plane (Yaw). Not for Given. */
 Pose align(const PosePairs& pairs, Alignment alignment);
 }  // namespace taut

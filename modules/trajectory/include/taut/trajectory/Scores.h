@@ -28,7 +28,7 @@ struct AbsoluteError
     Statistics rotation_deg;        //!< [deg]
 };
 
-AbsoluteError absoluteError(const PosePairs& pairs, Alignment alignment);
+AbsoluteError absoluteError(const PosePairs& pairs, const Pose& T_truth_estimate);
 
 /** How much of the truth the estimate says something about. */
 struct Coverage
@@ -48,6 +48,7 @@ Coverage coverageOf(const Trajectory& truth, const Trajectory& estimate, Duratio
 struct ScoreOptions
 {
     Alignment alignment = Alignment::SE3;
+    Pose T_truth_estimate;                   //!< of Alignment::Given
     std::vector<double> rpe_seconds{1, 10};  //!< [s]
     std::vector<double> rpe_metres{1, 10};   //!< [m]
     double min_coverage = 0.5;               //!< share of the truth's span

@@ -24,6 +24,11 @@ std::string tumLine(const StampedPose& pose);
  * first pose counts. */
 Trajectory readTum(const std::string& path, const WarningSink& warn = {});
 
+/** Reads a trajectory as the EuRoC data sets have their truth
+ * (state_groundtruth_estimate0/data.csv): `t [ns], x, y, z [m], qw, qx, qy, qz`, and columns that
+ * are left alone. Throws and warns as readTum(). */
+Trajectory readEuroc(const std::string& path, const WarningSink& warn = {});
+
 /** Writes a TUM file pose by pose, so that a long run needs no memory for it. Throws
  * std::runtime_error if the file cannot be written, std::invalid_argument if time does not
  * increase. Call close() to learn of a full disk: the destructor cannot tell. */
