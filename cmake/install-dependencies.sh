@@ -8,7 +8,7 @@ packages=(
   libyaml-cpp-dev zlib1g-dev libnlopt-cxx-dev libnlopt-dev liboctomap-dev libosmesa6-dev libnanoflann-dev robin-map-dev
   libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev
   libembree-dev libpcap-dev
-  libgtest-dev libgmock-dev libbenchmark-dev nlohmann-json3-dev libssl-dev gnuplot-nox
+  libgtest-dev libgmock-dev libbenchmark-dev nlohmann-json3-dev libssl-dev gnuplot-nox doxygen
 )
 [ "${1:-}" != --grabber ] || packages+=(libmrpt-hwdrivers-dev mrpt-apps)
 missing=()

@@ -56,12 +56,13 @@ class AWalkAmongThings : public ::testing::Test
         for (std::size_t position = 0; position < mapper->graph().vertices.size(); position++)
         {
             const auto submap = mapper->submap(mapper->graph().vertices[position].id);
+            std::vector<MovedThings::Seen> points;
             for (std::size_t scan = 1; scan < submap->scans.size(); scan++)
                 for (; next != seen.end() && next->t == submap->scans[scan].t; ++next)
-                    things.add(next->point, {position, static_cast<std::uint16_t>(scan)});
+                    points.push_back({next->point.cast<float>(), static_cast<std::uint16_t>(scan)});
+            things.judge(position, points);
         }
         EXPECT_TRUE(next == seen.end());
-        things.decide();
         return things;
     }
 

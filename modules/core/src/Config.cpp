@@ -133,6 +133,32 @@ void ConfigSection::key(const std::string& name, std::string& value, const std::
     record(name, quoted + "'", doc);
 }
 
+void ConfigSection::key(
+    const std::string& name, std::vector<double>& value, Range range, const std::string& doc)
+{
+    if (const YamlNode* given = node_.find(name))
+    {
+        if (given->kind != YamlNode::Kind::List)
+            throw ConfigError(keyAt(name) + " is not a list of numbers");
+        value.clear();
+        for (const YamlNode& item : given->list)
+        {
+            const auto number = numberIn<double>(item.scalar);
+            if (item.kind != YamlNode::Kind::Scalar || !number)
+                throw ConfigError(
+                    keyAt(name) + " has an item that is not a number: '" + item.scalar + "'");
+            value.push_back(*number);
+        }
+    }
+    std::string text;
+    for (const double v : value)
+    {
+        checkRange(name, v, range);
+        text += (text.empty() ? "" : ", ") + numberText(v);
+    }
+    record(name, "[" + text + "]", doc);
+}
+
 ConfigSection& ConfigSection::section(const std::string& name)
 {
     for (auto& e : entries_)

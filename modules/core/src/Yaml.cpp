@@ -262,6 +262,53 @@ YamlNode parseYaml(const std::string& text, const std::string& name)
     }
 }
 
+namespace
+{
+/** As a flow value, quoted, or as a block that begins on a line of its own. */
+void print(const YamlNode& node, int indent, std::string& out)
+{
+    const auto quoted = [](const std::string& text)
+    {
+        std::string q = "'";
+        for (const char c : text) q += c == '\'' ? std::string("''") : std::string(1, c);
+        return q + "'";
+    };
+    switch (node.kind)
+    {
+        case YamlNode::Kind::Null:
+            out += "\n";
+            return;
+        case YamlNode::Kind::Scalar:
+            out += " " + quoted(node.scalar) + "\n";
+            return;
+        case YamlNode::Kind::List:
+            if (node.list.empty()) out += " []";
+            out += "\n";
+            for (const YamlNode& item : node.list)
+            {
+                out += std::string(static_cast<std::size_t>(indent), ' ') + "-";
+                print(item, indent + 2, out);
+            }
+            return;
+        case YamlNode::Kind::Map:
+            if (indent > 0) out += "\n";
+            for (const YamlNode::Entry& entry : node.map)
+            {
+                out += std::string(static_cast<std::size_t>(indent), ' ') + quoted(entry.key) + ":";
+                print(entry.value, indent + 2, out);
+            }
+            return;
+    }
+}
+}  // namespace
+
+std::string yamlText(const YamlNode& node)
+{
+    std::string out;
+    print(node, 0, out);
+    return out;
+}
+
 std::string readTextFile(const std::string& path)
 {
     std::error_code error;

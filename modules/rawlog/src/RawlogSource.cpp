@@ -315,6 +315,7 @@ std::optional<Measurement> RawlogSource::Impl::convertLidar(const CObservation& 
     {
         ScanBuilder points = observationToPoints(observation, config.rig.lidar);
         Scan scan = points.finish();
+        correctBeams(scan, config.rig.lidar.beams);
         progress.points += points.seen();
         progress.points_not_finite += points.notFinite();
         progress.points_bad_time += points.badTime();

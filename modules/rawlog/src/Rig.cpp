@@ -47,6 +47,19 @@ void readLabel(ConfigSection& section, std::string& label)
     }
 }
 
+void readBeams(ConfigSection& section, BeamCorrections& beams)
+{
+    section.key("elevation", beams.elevation, {-10, 10}, "deg, added to each ring's");
+    section.key("range", beams.range, {-1, 1}, "m, added to each ring's");
+    for (double& angle : beams.elevation) angle *= kDegree;
+    if (beams.elevation.empty()) beams.elevation.resize(beams.range.size(), 0);
+    if (beams.range.empty()) beams.range.resize(beams.elevation.size(), 0);
+    if (beams.elevation.size() != beams.range.size())
+        throw ConfigError(
+            section.path() + ": elevation has " + std::to_string(beams.elevation.size()) +
+            " rings, range " + std::to_string(beams.range.size()));
+}
+
 void readLidar(ConfigSection& section, const YamlNode* node, LidarRig& lidar)
 {
     readLabel(section, lidar.label);
@@ -60,6 +73,7 @@ void readLidar(ConfigSection& section, const YamlNode* node, LidarRig& lidar)
     rows.key("first", first, {-90, 90}, "deg, of the first row of range images");
     rows.key("last", last, {-90, 90}, "deg, of the last row");
     if (given(node, "row_elevations")) lidar.row_elevations = {first * kDegree, last * kDegree};
+    readBeams(section.section("beams"), lidar.beams);
 }
 
 void readImu(ConfigSection& section, const YamlNode* node, ImuRig& imu)

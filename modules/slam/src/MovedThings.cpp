@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "taut/core/Voxel.h"
 #include "taut/loops/CommonView.h"
 #include "taut/loops/SubmapRegistration.h"
 
@@ -18,8 +19,7 @@ constexpr std::ptrdiff_t kFewestLooks = 2;
 constexpr int kSpread =
     4;  // voxels that what has gone may reach further than it was looked through
 
-using Moment = MovedThings::Moment;
-
+template <class Moment>
 void remember(std::vector<Moment>& looks, Moment moment)
 {
     const auto at = std::lower_bound(looks.begin(), looks.end(), moment);
@@ -28,6 +28,7 @@ void remember(std::vector<Moment>& looks, Moment moment)
     if (looks.size() > kMostLooks) looks.erase(looks.begin());  // the last ones decide
 }
 
+template <class Moment>
 std::ptrdiff_t countAfter(const std::vector<Moment>& looks, Moment moment)
 {
     return looks.end() - std::upper_bound(looks.begin(), looks.end(), moment);
@@ -44,102 +45,53 @@ void forAround(std::uint64_t voxel, const Visit& visit)
 }  // namespace
 
 MovedThings::MovedThings(Mapper& mapper, Executor& executor)
-    : mapper_(mapper),
-      executor_(executor),
-      graph_(mapper.resultGraph()),
-      fresh_(graph_.vertices.size())
+    : mapper_(mapper), executor_(executor), graph_(mapper.resultGraph())
 {
 }
 
-void MovedThings::add(const Vector3d& p_world, Moment moment)
+void MovedThings::judge(std::size_t position, const std::vector<Seen>& points)
 {
-    const std::uint64_t key = voxelKey(p_world, kInverseVoxel);
-    const auto [voxel, is_new] = voxels_.try_emplace(key);
-    voxel->second.last_return = moment;
-    if (!is_new) return;
-    voxel->second.point = p_world.cast<float>();
-    fresh_[moment.first].push_back(key);
+    Voxels voxels = freshVoxels(position, points);
+    if (voxels.empty()) return;
+    findNormals(position, voxels);
+    const std::vector<std::size_t> submaps = around(position);
+    lookAt(voxels, looksFrom(submaps));
+    findLastReturns(voxels, submaps);
+    decide(voxels);
 }
 
-std::size_t MovedThings::decide()
+MovedThings::Voxels MovedThings::freshVoxels(std::size_t position, const std::vector<Seen>& points)
 {
-    for (std::size_t position = 0; position < fresh_.size(); position++)
-        lookAt(position, fresh_[position]);
-    findLastReturns();
-    for (auto& [key, voxel] : voxels_)
-        voxel.gone = countAfter(voxel.through, voxel.last_return) >= kFewestLooks;
-    spread();
-    return static_cast<std::size_t>(std::count_if(
-        voxels_.begin(), voxels_.end(), [](const auto& entry) { return entry.second.gone; }));
-}
-
-/* Looks at what a submap saw first, with its own key scans and those of the submaps after it. */
-void MovedThings::lookAt(std::size_t position, const Fresh& fresh)
-{
-    std::vector<Voxel*> voxels;
-    for (const std::uint64_t key : fresh) voxels.push_back(&voxels_.at(key));
-    const std::vector<Vector3d> normals = normalsOf(position, fresh);
-    for (const Look& look : looksAround(position))
+    Voxels voxels;
+    for (const Seen& s : points)
     {
-        const Pose T_sensor_world = (poseOf(look.now.first) * look.key->T_submap_sensor).inverse();
-        executor_.forChunks(
-            voxels.size(), 1024,
-            [&](std::size_t, std::size_t begin, std::size_t end)
-            {
-                for (std::size_t i = begin; i < end; i++)
-                {
-                    Voxel& voxel = *voxels[i];
-                    const Vector3d p = T_sensor_world * Vector3d(voxel.point.cast<double>());
-                    if (p.squaredNorm() > square(kReach)) continue;
-                    const Visibility seen =
-                        visibilityOf(p, T_sensor_world.R * normals[i], *look.key);
-                    if (seen == Visibility::Surface)
-                        voxel.last_return = std::max(voxel.last_return, look.now);
-                    if (seen != Visibility::Free && seen != Visibility::Past) continue;
-                    remember(voxel.past, look.now);
-                    // What is no plane, such as a person, is not flat along any ray.
-                    if (seen == Visibility::Free || normals[i].isZero())
-                        remember(voxel.through, look.now);
-                }
-            });
+        const Vector3d p = s.point.cast<double>();
+        const std::uint64_t key = voxelKey(p, kInverseVoxel);
+        if (seen_.insert(key)) voxels[key].point = p;
+        const auto voxel = voxels.find(key);
+        if (voxel != voxels.end()) voxel->second.last_return = {position, s.scan};
     }
+    return voxels;
 }
 
-/* Key scans of the submap and of those after it around, evenly thinned. */
-std::vector<MovedThings::Look> MovedThings::looksAround(std::size_t position) const
-{
-    std::vector<Look> all;
-    for (const std::size_t other : around(position))
-    {
-        const auto submap = mapper_.submap(graph_.vertices[other].id);
-        for (const KeyScan& key : submap->key_scans)
-            all.push_back({submap, &key, {other, key.scan}});
-    }
-    std::vector<Look> looks;
-    const std::size_t count = std::min(all.size(), kMostKeyScans);
-    for (std::size_t i = 0; i < count; i++) looks.push_back(all[i * all.size() / count]);
-    return looks;
-}
-
-std::vector<Vector3d> MovedThings::normalsOf(std::size_t position, const Fresh& fresh)
+void MovedThings::findNormals(std::size_t position, Voxels& voxels)
 {
     const SubmapView view = mapper_.viewOf(graph_.vertices[position].id);
     const Pose T_submap_world = poseOf(position).inverse();
     std::vector<MapPoint> points;
-    for (const std::uint64_t key : fresh)
+    for (const auto& [key, voxel] : voxels)
     {
-        const Voxel& voxel = voxels_.at(key);
-        const Vector3d p = T_submap_world * Vector3d(voxel.point.cast<double>());
-        const bool seen_here = voxel.last_return.first == position;
-        const std::size_t scan = seen_here ? voxel.last_return.second : 0;
-        const Vector3d seen_from = view.submap->scans[scan].T_submap_imu.p;
+        const Vector3d p = T_submap_world * voxel.point;
+        const Vector3d seen_from = view.submap->scans[voxel.last_return.second].T_submap_imu.p;
         points.push_back({p, FeatureKind::Any, (seen_from - p).normalized()});
     }
-    std::vector<Vector3d> normals = SubmapRegistration(*view.map, executor_).normalsOf(points);
-    for (Vector3d& normal : normals) normal = poseOf(position).R * normal;
-    return normals;
+    const std::vector<Vector3d> normals =
+        SubmapRegistration(*view.map, executor_).normalsOf(points);
+    auto normal = normals.begin();
+    for (auto& [key, voxel] : voxels) voxel.normal = poseOf(position).R * *normal++;
 }
 
+/* The submap itself, and those after it that see the same place. */
 std::vector<std::size_t> MovedThings::around(std::size_t position) const
 {
     const double reach = mapper_.submap(graph_.vertices[position].id)->reach;
@@ -156,48 +108,99 @@ std::vector<std::size_t> MovedThings::around(std::size_t position) const
     return nearest;
 }
 
-/* map.ply keeps the first point at a place alone; the submaps tell of those that came later. */
-void MovedThings::findLastReturns()
+/* Key scans of these submaps, evenly thinned. */
+std::vector<MovedThings::Look> MovedThings::looksFrom(const std::vector<std::size_t>& submaps) const
 {
-    for (std::size_t position = 0; position < graph_.vertices.size(); position++)
+    std::vector<Look> all;
+    for (const std::size_t position : submaps)
+    {
+        const auto submap = mapper_.submap(graph_.vertices[position].id);
+        for (const KeyScan& key : submap->key_scans)
+            all.push_back({submap, &key, {position, key.scan}});
+    }
+    std::vector<Look> looks;
+    const std::size_t count = std::min(all.size(), kMostKeyScans);
+    for (std::size_t i = 0; i < count; i++) looks.push_back(all[i * all.size() / count]);
+    return looks;
+}
+
+void MovedThings::lookAt(Voxels& voxels, const std::vector<Look>& looks)
+{
+    std::vector<Voxel*> all;
+    for (auto& [key, voxel] : voxels) all.push_back(&voxel);
+    for (const Look& look : looks)
+    {
+        const Pose T_sensor_world = (poseOf(look.now.first) * look.key->T_submap_sensor).inverse();
+        executor_.forChunks(
+            all.size(), 1024,
+            [&](std::size_t, std::size_t begin, std::size_t end)
+            {
+                for (std::size_t i = begin; i < end; i++)
+                {
+                    Voxel& voxel = *all[i];
+                    const Vector3d p = T_sensor_world * voxel.point;
+                    if (p.squaredNorm() > square(kReach)) continue;
+                    const Visibility seen =
+                        visibilityOf(p, T_sensor_world.R * voxel.normal, *look.key);
+                    if (seen == Visibility::Surface)
+                        voxel.last_return = std::max(voxel.last_return, look.now);
+                    if (seen != Visibility::Free && seen != Visibility::Past) continue;
+                    remember(voxel.past, look.now);
+                    // What is no plane, such as a person, is not flat along any ray.
+                    if (seen == Visibility::Free || voxel.normal.isZero())
+                        remember(voxel.through, look.now);
+                }
+            });
+    }
+}
+
+/* map.ply keeps the first point at a place alone; the submaps tell of those that came later. */
+void MovedThings::findLastReturns(Voxels& voxels, const std::vector<std::size_t>& submaps) const
+{
+    for (const std::size_t position : submaps)
     {
         const auto submap = mapper_.submap(graph_.vertices[position].id);
         for (const SubmapPoint& p : submap->points)
         {
             const Vector3d p_world = poseOf(position) * Vector3d(p.position.cast<double>());
-            const auto found = voxels_.find(voxelKey(p_world, kInverseVoxel));
-            if (found == voxels_.end()) continue;
-            found->second.last_return = std::max(found->second.last_return, {position, p.scan});
+            const auto found = voxels.find(voxelKey(p_world, kInverseVoxel));
+            if (found == voxels.end()) continue;
+            found->second.last_return =
+                std::max(found->second.last_return, Moment(position, p.scan));
         }
     }
 }
 
-void MovedThings::spread()
+void MovedThings::decide(Voxels& voxels)
 {
     std::vector<std::uint64_t> front;
-    for (const auto& [key, voxel] : voxels_)
-        if (voxel.gone) front.push_back(key);
+    const auto leave = [&](std::uint64_t key, Voxel& voxel)
+    {
+        voxel.gone = true;
+        gone_.insert(key);
+        front.push_back(key);
+    };
+    for (auto& [key, voxel] : voxels)
+        if (countAfter(voxel.through, voxel.last_return) >= kFewestLooks) leave(key, voxel);
     for (int step = 0; step < kSpread; step++)
     {
-        std::vector<std::uint64_t> next;
-        for (const std::uint64_t key : front)
+        std::vector<std::uint64_t> last;
+        last.swap(front);
+        for (const std::uint64_t key : last)
             forAround(
                 key,
                 [&](std::uint64_t around)
                 {
-                    const auto found = voxels_.find(around);
-                    if (found == voxels_.end() || found->second.gone) return;
-                    if (countAfter(found->second.past, found->second.last_return) == 0) return;
-                    found->second.gone = true;
-                    next.push_back(around);
+                    const auto found = voxels.find(around);
+                    if (found == voxels.end() || found->second.gone) return;
+                    if (countAfter(found->second.past, found->second.last_return) > 0)
+                        leave(around, found->second);
                 });
-        front.swap(next);
     }
 }
 
 bool MovedThings::haveLeft(const Vector3d& p_world) const
 {
-    const auto found = voxels_.find(voxelKey(p_world, kInverseVoxel));
-    return found != voxels_.end() && found->second.gone;
+    return gone_.contains(voxelKey(p_world, kInverseVoxel));
 }
 }  // namespace taut

@@ -36,6 +36,9 @@ class ConfigSection
     void key(const std::string& name, int& value, Range range, const std::string& doc);
     void key(const std::string& name, bool& value, const std::string& doc);
     void key(const std::string& name, std::string& value, const std::string& doc);
+    /** A list of numbers, each within the range. */
+    void key(
+        const std::string& name, std::vector<double>& value, Range range, const std::string& doc);
 
     /** An enumeration, by name. */
     template <class Enum>

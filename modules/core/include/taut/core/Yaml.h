@@ -61,6 +61,9 @@ struct YamlNode::Entry
  * than a megabyte. */
 YamlNode parseYaml(const std::string& text, const std::string& name = "");
 
+/** YAML text that parseYaml() reads back to the same values. */
+std::string yamlText(const YamlNode& node);
+
 /** The text of a configuration file. Throws ConfigError if it is no regular file or cannot be read.
  */
 std::string readTextFile(const std::string& path);

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "taut/core/Beams.h"
 #include "taut/core/Geometry.h"
 #include "taut/core/Imu.h"
 
@@ -17,6 +18,7 @@ struct LidarRig
     double clock_offset = 0;  //!< [s] added to the LiDAR's stamps to get the IMU's clock
     /** Elevation of the first and the last row of range images, the others evenly between [rad]. */
     std::optional<std::pair<double, double>> row_elevations;
+    BeamCorrections beams;  //!< added to what it measures
 };
 
 /** Facts of the IMU that override the log's. */

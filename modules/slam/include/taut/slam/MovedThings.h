@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "taut/core/Voxel.h"
+#include "taut/core/VoxelSet.h"
 #include "taut/slam/Mapper.h"
 
 namespace taut
@@ -12,39 +12,39 @@ namespace taut
 /** What was seen and is not there any more: people, cars. Judges voxels of 0.2 m. One has gone if,
  * after the last return in it, two key scans at least looked through it; and so have its neighbours
  * that nothing was seen in since and that one key scan looked past. Looks at the submaps of a
- * mapper's results, along the final path. */
+ * mapper's results, along the final path. Memory is that of one submap and a few bytes a voxel. */
 class MovedThings
 {
  public:
-    /** A scan in the order in which they were made: position of its submap in the graph, and which
-     * of it. */
-    using Moment = std::pair<std::size_t, std::uint16_t>;
-
     MovedThings(Mapper& mapper, Executor& executor);
 
-    /** A point of the map (world frame of the results [m]) and when it was seen; in the order of
-     * time. */
-    void add(const Vector3d& p_world, Moment moment);
+    /** A point of the map, and which scan of its submap saw it. */
+    struct Seen
+    {
+        Eigen::Vector3f point;  //!< world frame of the results [m]
+        std::uint16_t scan = 0;
+    };
 
-    /** After all points: looks through them with the key scans. Gives the number of voxels that
-     * have gone. */
-    std::size_t decide();
+    /** The points of the submap at a position of the results' graph, in the order of the scans;
+     * submap after submap. Looks at those that no submap before has seen. */
+    void judge(std::size_t position, const std::vector<Seen>& points);
 
-    /** After decide(): whether what was seen at a point has gone. */
+    /** After all submaps: whether what was seen at a point (world frame [m]) has gone. */
     bool haveLeft(const Vector3d& p_world) const;
+    bool none() const { return gone_.size() == 0; }
 
  private:
-    using Vector3f = Eigen::Vector3f;
+    /** A scan in the order in which they were made: position of its submap, and which of it. */
+    using Moment = std::pair<std::size_t, std::uint16_t>;
     struct Voxel
     {
-        Vector3f point;                     //!< the first one in it
+        Vector3d point;                     //!< the first one in it
+        Vector3d normal;                    //!< of the surface that it is of; zero: it is of none
         Moment last_return;                 //!< in it, or on a surface that goes through it
         std::vector<Moment> through, past;  //!< key scans that looked so, the last ones
         bool gone = false;
     };
-    /** Voxels that a submap saw first. */
-    using Fresh = std::vector<std::uint64_t>;
-
+    using Voxels = std::unordered_map<std::uint64_t, Voxel, VoxelHash>;
     /** A key scan and when it was made. */
     struct Look
     {
@@ -53,12 +53,13 @@ class MovedThings
         Moment now;
     };
 
-    void lookAt(std::size_t position, const Fresh& fresh);
-    std::vector<Look> looksAround(std::size_t position) const;
-    void findLastReturns();
-    void spread();
+    Voxels freshVoxels(std::size_t position, const std::vector<Seen>& points);
+    void findNormals(std::size_t position, Voxels& voxels);
     std::vector<std::size_t> around(std::size_t position) const;
-    std::vector<Vector3d> normalsOf(std::size_t position, const Fresh& fresh);
+    std::vector<Look> looksFrom(const std::vector<std::size_t>& submaps) const;
+    void lookAt(Voxels& voxels, const std::vector<Look>& looks);
+    void findLastReturns(Voxels& voxels, const std::vector<std::size_t>& submaps) const;
+    void decide(Voxels& voxels);
     const Pose& poseOf(std::size_t position) const
     {
         return graph_.vertices[position].T_world_submap;
@@ -67,7 +68,6 @@ class MovedThings
     Mapper& mapper_;
     Executor& executor_;
     PoseGraph graph_;  // of the results
-    std::unordered_map<std::uint64_t, Voxel, VoxelHash> voxels_;
-    std::vector<Fresh> fresh_;  // of each submap
+    VoxelSet seen_, gone_;
 };
 }  // namespace taut
