@@ -64,7 +64,7 @@ LidarFactor::Noise LidarFactor::noiseOf(std::size_t i, double balance) const
 {
     const double sigma = correspondences_[i].sigma;
     const double variance = balance * balance * (noise_.sigma * noise_.sigma + sigma * sigma);
-    return {variance, surprise_ * (variance + predicted_variance_[i]), noise_.kernel};
+    return {variance, excess_ * (variance + predicted_variance_[i]), noise_.kernel};
 }
 
 /** Normal equations of the points between two nodes of the path. The derivative J of a residual r
@@ -141,12 +141,12 @@ void LidarFactor::setCorrespondences(
                 }
             }
         });
-    measureSurprise(path, balance);
+    measureExcess(path, balance);
 }
 
-void LidarFactor::measureSurprise(const SweepPath& path, double balance)
+void LidarFactor::measureExcess(const SweepPath& path, double balance)
 {
-    surprise_ = 1;  // of the residuals alone
+    excess_ = 1;  // of the residuals alone
     std::vector<double> e2;
     e2.reserve(correspondences_.size());
     forResiduals(
@@ -157,7 +157,7 @@ void LidarFactor::measureSurprise(const SweepPath& path, double balance)
     const auto middle = e2.begin() + static_cast<std::ptrdiff_t>(e2.size() / 2);
     std::nth_element(e2.begin(), middle, e2.end());
     constexpr double kMedianOfChi2 = 0.455;  // one degree of freedom
-    surprise_ = std::max(1.0, *middle / kMedianOfChi2);
+    excess_ = std::max(1.0, *middle / kMedianOfChi2);
 }
 
 const LidarFactor::Placed& LidarFactor::placed(const SweepPath& path) const

@@ -84,7 +84,7 @@ class LidarFactor
     Interval linearizeInterval(const Placed& placed, double balance, Time begin) const;
     Time timeOf(std::size_t i) const { return features_.stamp + features_.points[i].offset; }
     Noise noiseOf(std::size_t i, double balance) const;
-    void measureSurprise(const SweepPath& path, double balance);
+    void measureExcess(const SweepPath& path, double balance);
 
     template <class Body>
     void forResiduals(const SweepPath& path, double balance, const Body& body) const;
@@ -94,7 +94,7 @@ class LidarFactor
     Executor& executor_;
     std::vector<Correspondence> correspondences_;
     std::vector<double> predicted_variance_;  // [m^2] of each residual
-    double surprise_ = 1;                     // squared, of the median residual
+    double excess_ = 1;                       // squared, of the median residual
     mutable Placed placed_;                   // by the last path: asked for several times
 };
 }  // namespace taut
