@@ -9,6 +9,7 @@ packages=(
   libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev
   libembree-dev libpcap-dev
   libgtest-dev libgmock-dev libbenchmark-dev nlohmann-json3-dev libssl-dev gnuplot-nox
+  libjs-three
 )
 [ "${1:-}" != --grabber ] || packages+=(libmrpt-hwdrivers-dev mrpt-apps)
 missing=()
