@@ -43,7 +43,7 @@ function fillLists(data, go) {
 }
 
 function tableCard({title, note, header, rows}) {
-  const table = element('table', {});
+  const table = element('table', header.length > 0 ? {class: 'figures'} : {});
   if (header.length > 0) table.append(element('tr', {}, ...header.map(h => element('th', {scope: 'col'}, h))));
   for (const row of rows)
     table.append(element('tr', {}, ...row.map(

@@ -22,7 +22,7 @@ class View {
     this.controls.addEventListener('end', () => { this.moving = false; this.budget = Infinity; this.invalidate(); });
     this.budget = Infinity;
     this.follow = false;
-    new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement);
+    new ResizeObserver(() => { if (this.resize()) this.draw(); }).observe(this.canvas.parentElement);
     this.resize();
     this.look('oblique');
   }
@@ -93,15 +93,18 @@ class View {
     this.invalidate();
   }
 
+  /** Fits the picture to its place; false where it fits already. */
   resize() {
     const {clientWidth: w, clientHeight: h} = this.canvas.parentElement;
-    if (w === 0 || h === 0) return;
+    if (w === 0 || h === 0 || (w === this.width && h === this.height)) return false;
+    this.width = w;
+    this.height = h;
     this.renderer.setSize(w, h, false);
     this.camera.aspect = w / h;
     this.camera.updateProjectionMatrix();
     for (const lines of [this.pathLines, this.loopLines, this.truthLines])
       if (lines) lines.material.resolution.set(w, h);
-    this.draw();
+    return true;
   }
 
   /** Looks at everything: 'oblique', 'top' or 'side'. */

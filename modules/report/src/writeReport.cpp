@@ -70,21 +70,14 @@ void writeReport(const Report& report, const std::string& path, std::size_t max_
     const std::size_t at_title = find(page, kTitleMarker), at_data = find(page, kDataMarker);
 
     const std::string part = path + ".part";
-    {
-        std::ofstream out(part, std::ios::binary);
-        out << page.substr(0, at_title) << title
-            << page.substr(
-                   at_title + kTitleMarker.size(), at_data - at_title - kTitleMarker.size());
-        writeData(out, data, points);
-        out << page.substr(at_data + kDataMarker.size());
-        out.close();
-        if (!out)
-        {
-            std::remove(part.c_str());
-            throw std::runtime_error("cannot write '" + path + "'");
-        }
-    }
-    if (std::rename(part.c_str(), path.c_str()) != 0)
-        throw std::runtime_error("cannot write '" + path + "'");
+    std::ofstream out(part, std::ios::binary);
+    out << page.substr(0, at_title) << title
+        << page.substr(at_title + kTitleMarker.size(), at_data - at_title - kTitleMarker.size());
+    writeData(out, data, points);
+    out << page.substr(at_data + kDataMarker.size());
+    out.close();
+    if (out && std::rename(part.c_str(), path.c_str()) == 0) return;
+    std::remove(part.c_str());
+    throw std::runtime_error("cannot write '" + path + "'");
 }
 }  // namespace taut

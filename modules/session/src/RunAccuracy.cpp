@@ -9,12 +9,20 @@ namespace taut
 {
 namespace
 {
-std::vector<std::string> row(const std::string& name, const Statistics& s)
+std::vector<std::string> row(const std::string& name, const Statistics& s, double factor = 1)
 {
     if (s.count == 0) return {name, "none: too short", "", "", ""};
-    return {
-        name, format("%.4g", s.rmse), format("%.4g", s.mean), format("%.4g", s.median),
-        format("%.4g", s.max)};
+    std::vector<std::string> cells{name};
+    for (const double value : {s.rmse, s.mean, s.median, s.max})
+        cells.push_back(format("%.3g", factor * value));
+    return cells;
+}
+
+/** Small lengths in mm. */
+std::vector<std::string> rowOfLengths(const std::string& name, const Statistics& s)
+{
+    const bool small = s.max < 1;
+    return row(name + (small ? " [mm]" : " [m]"), s, small ? 1000 : 1);
 }
 
 std::string length(double metres)
@@ -29,10 +37,11 @@ ReportTable errorTable(const Scores& s)
         "After alignment by a rotation and a translation (SE3). Relative errors are those of the "
         "motion over a time or a distance.",
         {"", "RMSE", "mean", "median", "largest"},
-        {row("position [m]", s.absolute.position), row("attitude [deg]", s.absolute.rotation_deg)}};
+        {rowOfLengths("position", s.absolute.position),
+         row("attitude [deg]", s.absolute.rotation_deg)}};
     const auto add = [&](const RelativeError& e, const char* unit)
     {
-        table.rows.push_back(row(format("over %g %s [m]", e.delta, unit), e.translation));
+        table.rows.push_back(rowOfLengths(format("over %g %s", e.delta, unit), e.translation));
         table.rows.push_back(row(format("over %g %s [deg]", e.delta, unit), e.rotation_deg));
     };
     for (const RelativeError& e : s.over_time) add(e, "s");
