@@ -171,5 +171,10 @@ TEST_F(APage, OfARunWithoutPosesOpens)
     report.warnings = {{"no_rest", 1, {{0, "no_rest", "it never rests"}}}};
     open(report);
     EXPECT_EQ(browser->evaluate("document.getElementById('title').textContent"), report.title);
-    EXPECT_TRUE(browser->evaluate("document.getElementById('timeline').hidden").get<bool>());
+    for (const char* id : {"timeline", "show-loops-label", "show-truth-label"})
+        EXPECT_EQ(
+            browser->evaluate(
+                "getComputedStyle(document.getElementById('" + std::string(id) + "')).display"),
+            "none")
+            << id;
 }
