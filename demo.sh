@@ -9,7 +9,8 @@ cmake --build --preset release --target taut-slam taut-evaluate
 out=$PWD/out/demo
 programs=build/release/bin
 # The recording rests for 3 s before it moves.
-"$programs/taut-slam" -i rawlogs/hall_fast.rawlog -o "$out" -w -s initialization.rest_duration=3
+"$programs/taut-slam" -i rawlogs/hall_fast.rawlog -o "$out" -w -s initialization.rest_duration=3 \
+  --truth rawlogs/hall_fast.gt.tum
 echo
 echo "Accuracy, against the truth of the simulation:"
 "$programs/taut-evaluate" --truth rawlogs/hall_fast.gt.tum --estimate "$out/trajectory.tum"
@@ -18,4 +19,5 @@ cat <<END
 trajectory  $out/trajectory.tum
 map         $out/map.ply (points), $out/map.bt and $out/map.ot (OctoMap: open in octovis)
 pictures    $out/snapshot_top.png, snapshot_oblique.png and snapshot_follow.png beside it
+page        $out/report.html: all of it in a browser
 END

@@ -32,6 +32,10 @@ find_library(PCAP_LIBRARY pcap REQUIRED)
 add_library(PCAP::PCAP INTERFACE IMPORTED)
 set_target_properties(PCAP::PCAP PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${PCAP_INCLUDE_DIR}"
                                             INTERFACE_LINK_LIBRARIES "${PCAP_LIBRARY}")
+# libjs-three 111: drawn with in report.html, which holds a copy (Expat licence). Its scripts for pages without modules
+# went away with release 148.
+find_path(THREE_FOLDER examples/js/controls/OrbitControls.js REQUIRED
+          PATHS /usr/share/javascript/three /usr/share/nodejs/three NO_DEFAULT_PATH)
 find_package(embree 3 QUIET) # libembree-dev 3.13.5; optional: simulation
 # libmrpt-hwdrivers-dev 2.5.8, optional: drivers for rawlog-grabber (mrpt-apps), which the tests run
 find_package(mrpt-hwdrivers 2.5 QUIET)

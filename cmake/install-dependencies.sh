@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that taut builds with; does nothing where they are there already.
 # With --grabber also MRPT's sensor drivers and rawlog-grabber, which pull in Qt and wxWidgets.
+# With --browser also chromium, in which the tests look at report.html (124 MB to fetch, 414 MB installed).
 set -euo pipefail
 packages=(
   g++ cmake ninja-build pkg-config
@@ -9,8 +10,15 @@ packages=(
   libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev
   libembree-dev libpcap-dev
   libgtest-dev libgmock-dev libbenchmark-dev nlohmann-json3-dev libssl-dev gnuplot-nox doxygen
+  libjs-three
 )
-[ "${1:-}" != --grabber ] || packages+=(libmrpt-hwdrivers-dev mrpt-apps)
+for option in "$@"; do
+  case "$option" in
+    --grabber) packages+=(libmrpt-hwdrivers-dev mrpt-apps) ;;
+    --browser) packages+=(chromium) ;;
+    *) echo "$0: unknown option '$option'" >&2; exit 2 ;;
+  esac
+done
 missing=()
 for p in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$p" 2>/dev/null | grep -q 'install ok installed' || missing+=("$p")

@@ -93,6 +93,10 @@ bool parseOptions(int argc, char** argv, Options& o)
         false, 0, "N", cmd);
     TCLAP::SwitchArg overwrite("w", "overwrite", "Write into a folder that has results", cmd);
     TCLAP::SwitchArg pictures("", "no-pictures", "Do not render snapshots", cmd);
+    TCLAP::SwitchArg no_report("", "no-report", "Do not write report.html", cmd);
+    TCLAP::ValueArg<std::string> truth(
+        "", "truth", "True trajectory (TUM file) that report.html compares the run with", false, "",
+        "GT.tum", cmd);
     TCLAP::SwitchArg show(
         "", "show-config", "Print the configuration in effect and end; needs neither -i nor -o",
         cmd);
@@ -125,6 +129,10 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.threads = threads.getValue();
     o.overwrite = overwrite.getValue();
     o.no_pictures = pictures.getValue();
+    o.no_report = no_report.getValue();
+    o.truth = truth.getValue();
+    if (o.no_report && !o.truth.empty())
+        throw UsageError("--truth is for report.html, which --no-report leaves out");
     o.show_config = show.getValue();
     o.verbosity = quiet.getValue() ? 0 : verbosityOf(level.getValue());
     if (o.only_first_n < 0) throw UsageError("--only-first-n must not be negative");

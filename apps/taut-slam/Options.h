@@ -13,16 +13,17 @@ struct Options
     std::string config;                 //!< method file; empty: config/default.yaml
     std::vector<std::string> settings;  //!< section.key=value, over the method file
     std::string rig;
-    std::string map;               //!< results of an earlier run; empty: none
-    bool extend_map = false;       //!< its submaps may move and belong to the results
-    std::vector<double> start_at;  //!< x, y, z [m], yaw [rad] in that map; empty: not known
+    std::string map;                     //!< results of an earlier run; empty: none
+    bool extend_map = false;             //!< its submaps may move and belong to the results
+    std::vector<double> start_at;        //!< x, y, z [m], yaw [rad] in that map; empty: not known
     std::string lidar_label, imu_label;  //!< regular expressions; empty: the only sensor there
     double from_time = 0,
            to_time = std::numeric_limits<double>::infinity();  //!< [s] from the start
     int only_first_n = 0;                                      //!< scans; 0: all
     std::vector<std::string> plugins;
-    int threads = 0;  //!< 0: as many as the machine has
-    bool overwrite = false, no_pictures = false, show_config = false;
+    int threads = 0;    //!< 0: as many as the machine has
+    std::string truth;  //!< trajectory that report.html compares the run with; empty: none
+    bool overwrite = false, no_pictures = false, no_report = false, show_config = false;
     int verbosity = 2;  //!< 0 errors, 1 warnings, 2 progress, 3 every scan
 };
 

@@ -16,6 +16,7 @@
 #include "taut/session/ResultFolder.h"
 #include "taut/session/Session.h"
 #include "taut/session/registerSession.h"
+#include "taut/trajectory/TrajectoryFile.h"
 
 namespace fs = std::filesystem;
 
@@ -66,7 +67,7 @@ void makeFolder(const Options& o)
         throw UsageError("-o is the folder of -m: the map would be overwritten");
     try
     {
-        prepareResultFolder(o.output, o.overwrite, {o.input, o.config, o.rig});
+        prepareResultFolder(o.output, o.overwrite, {o.input, o.config, o.rig, o.truth});
     }
     catch (const FolderInUse& e)
     {
@@ -97,6 +98,8 @@ class Run
         session_.threads = options.threads;
         if (!options.map.empty()) session_.known_map = knownMap(options);
         session_.pictures = !options.no_pictures;
+        session_.report = !options.no_report;
+        if (!options.truth.empty()) session_.truth = readTum(options.truth, warnings_.sink());
     }
 
     /** The exit code. */
@@ -129,7 +132,7 @@ class Run
         if (!outcome.failure.empty())
             throw std::runtime_error(outcome.failure + "; what was done before is saved");
         if (outcome.poses == 0) throw std::runtime_error("no scan could be used");
-        if (outcome.pictures_failed) return 1;
+        if (outcome.pictures_failed || outcome.report_failed) return 1;
         return outcome.partly ? 3 : 0;
     }
 
@@ -162,17 +165,19 @@ class Run
         std::cerr << warnings_.summaryOfRest();
         if (options_.verbosity < 2) return;
         const bool pictures = session_.pictures && o.poses > 0 && !o.pictures_failed;
+        const bool page = session_.report && !o.report_failed;
         std::printf(
             "%d poses, %.2f m, %.1f s of recording in %.1f s (%.1f ms a scan), %zu map points\n"
             "%zu submaps, %zu loops%s\n"
-            "results in %s: trajectory.tum, map.ply, map.ot, map.bt, %smetrics.json\n",
+            "results in %s: trajectory.tum, map.ply, map.ot, map.bt, %s%smetrics.json\n",
             o.poses, o.length, o.duration, o.wall_seconds, o.milliseconds_a_scan, o.map_points,
             o.submaps, o.loops,
             o.undistorted_again ? " closed, every point undistorted again"
             : o.corrected       ? " closed"
             : o.loops > 0       ? " seen; the odometry has no gap to close"
                                 : "",
-            options_.output.c_str(), pictures ? "snapshot_*.png, " : "");
+            options_.output.c_str(), pictures ? "snapshot_*.png, " : "",
+            page ? "report.html, " : "");
     }
 
     const Options& options_;

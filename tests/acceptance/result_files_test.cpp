@@ -78,6 +78,27 @@ TEST(ASampleRun, GivesEveryFileAndMillimetres)
     EXPECT_NEAR(metrics["result"]["length_m"], 18.56, 0.1);
 }
 
+TEST(ASampleRun, LeavesAPageThatCanBeMadeAgain)
+{
+    const TemporaryFolder folder;
+    const std::string out = folder / "out", again = folder / "again.html";
+    const std::string truth = " --truth " + kSampleTruth;
+    ASSERT_EQ(slam(kSample, out, truth).exit_code, 0);
+    const std::string page = contentOf(out + "/report.html");
+    EXPECT_THAT(page, StartsWith("<!DOCTYPE html>"));
+    EXPECT_THAT(page, testing::HasSubstr("<title>hall_fast.rawlog</title>"));
+    EXPECT_THAT(page, testing::HasSubstr("RMSE against the truth"));
+    EXPECT_LT(page.size(), 5'000'000U);
+    const ProgramRun made = runProgram(TAUT_PROGRAMS "/taut-report", out + truth + " -o " + again);
+    EXPECT_EQ(made.exit_code, 0) << made.output;
+    EXPECT_TRUE(contentOf(again) == page);
+
+    const ProgramRun without = slam(kSample, folder / "without", "--no-report --only-first-n 40");
+    EXPECT_EQ(without.exit_code, 0) << without.output;
+    EXPECT_FALSE(std::filesystem::exists(folder / "without/report.html"));
+    EXPECT_EQ(runProgram(TAUT_PROGRAMS "/taut-report", folder / "absent").exit_code, 1);
+}
+
 TEST(ASampleRun, WorksByThePaper)
 {
     const TemporaryFolder folder;

@@ -1,5 +1,6 @@
 #include "taut/session/MapExport.h"
 
+#include <cmath>
 #include <filesystem>
 
 namespace taut
@@ -30,10 +31,10 @@ MapExport::MapExport(const MapExportConfig& config, const std::string& folder)
 {
 }
 
-void MapExport::addPoint(const Vector3d& p)
+void MapExport::addPoint(const Vector3d& p, float intensity)
 {
     if (!voxels_.insert(voxelKey(p, 1 / spacing_))) return;
-    ply_.append({p.cast<float>(), 0});
+    ply_.append({p.cast<float>(), intensity});
     sample_.add(p.cast<float>());
 }
 
@@ -45,7 +46,9 @@ bool MapExport::isKey(const NavState& state) const
            toSeconds(state.t - last_key_.t) > config_.key_time;
 }
 
-void MapExport::add(const NavState& state, const std::vector<Vector3d>& points_world)
+void MapExport::add(
+    const NavState& state, const std::vector<Vector3d>& points_world,
+    const std::vector<LidarPoint>& raw)
 {
     if (voxels_.size() > kMaxVoxels)
     {
@@ -53,7 +56,11 @@ void MapExport::add(const NavState& state, const std::vector<Vector3d>& points_w
         spacing_ *= 2;
     }
     scans_.emplace_back(state.t, ply_.size());
-    for (const Vector3d& p : points_world) addPoint(p);
+    for (std::size_t i = 0; i < points_world.size(); i++)
+    {
+        const float intensity = i < raw.size() ? raw[i].intensity : 0;
+        addPoint(points_world[i], std::isfinite(intensity) ? intensity : 0);
+    }
     if (points_world.empty() || !isKey(state)) return;
     last_key_ = state;
     key_scans_++;

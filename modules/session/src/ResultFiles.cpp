@@ -63,7 +63,7 @@ ResultFiles::ResultFiles(const std::string& folder, bool points)
         for (const char* axis : {"x", "y", "z"}) states_ << ",var_" << entry << '_' << axis;
     states_ << ",iterations,features,correspondences,cost,balance,converged,lidar_used,"
                "translation_information_1,translation_information_2,translation_information_3,"
-               "rotation_information_1,rotation_information_2,rotation_information_3\n";
+               "rotation_information_1,rotation_information_2,rotation_information_3,fit\n";
     timing_ << "t,points,transform_ms,preintegrate_ms,extract_ms,match_ms,solve_ms,insert_ms,"
                "total_ms\n";
 }
@@ -85,7 +85,7 @@ void ResultFiles::writeState(const ScanResult& r)
             << r.report.converged << ',' << r.report.lidar_used;
     for (const double e : r.report.translation_information) states_ << ',' << e;
     for (const double e : r.report.rotation_information) states_ << ',' << e;
-    states_ << '\n';
+    states_ << ',' << r.report.fit() << '\n';
 }
 
 void ResultFiles::writeTiming(const ScanResult& r)

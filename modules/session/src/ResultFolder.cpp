@@ -27,6 +27,7 @@ constexpr const char* kResults[] = {
     "metrics.json",
     "config.yaml",
     "rig.yaml",
+    "report.html",
     "snapshot_top.png",
     "snapshot_oblique.png",
     "snapshot_follow.png"};

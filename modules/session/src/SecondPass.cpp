@@ -36,7 +36,8 @@ bool undistortAgain(
         config,
         [&]() -> std::optional<SweepRecord>
         { return next < records.size() ? std::optional(records[next++]) : std::nullopt; },
-        [&](const Sweep& sweep) { map.add(sweep.end, sweep.undistorted(sweep.begin, sweep.end)); });
+        [&](const Sweep& sweep)
+        { map.add(sweep.end, sweep.undistorted(sweep.begin, sweep.end), sweep.scan.points); });
     while (std::optional<Measurement> m = log.next())
     {
         replay.add(std::move(*m));

@@ -10,7 +10,9 @@
 #include "takeOutMovedThings.h"
 #include "taut/core/format.h"
 #include "taut/graph/G2oFile.h"
+#include "taut/report/writeReport.h"
 #include "taut/session/ResultFolder.h"
+#include "taut/session/RunReport.h"
 #include "taut/slam/LoopsFile.h"
 #include "taut/slam/SimpleMapFile.h"
 
@@ -90,7 +92,7 @@ void Session::take(const Event& event)
         if (!config_.method.refined)
         {
             path_->add({x.t, x.T_world_imu});
-            map_->add(x, result.points);
+            map_->add(x, result.points, result.sweep.scan.points);
         }
     }
     else if (const auto* refined = std::get_if<Refined>(&event))
@@ -116,7 +118,7 @@ void Session::takeRefined(const Refined& refined)
     if (for_files)
     {
         path_->add({x.t, x.T_world_imu});
-        map_->add(x, points);
+        map_->add(x, points, refined.sweep.scan.points);
     }
     if (!mapper_) return;
     if (records_.empty())
@@ -188,6 +190,7 @@ SessionOutcome Session::finish(const StreamProgress& log, bool incomplete, bool 
     outcome.poses = path_->poses();
     outcome.pictures_failed = config_.pictures && outcome.poses > 0 && !drawPictures();
     writeMetrics(log, incomplete, interrupted);
+    outcome.report_failed = config_.report && !writePage();
     outcome.length = path_->length();
     outcome.duration = metrics_.duration();
     outcome.wall_seconds = wall_seconds_;
@@ -311,6 +314,21 @@ bool Session::drawPictures() const
     RenderScene scene{map_->sample(), path_->sample(), caption()};
     if (mapper_) scene.loops = mapper_->joinedPlaces();
     return drawViews(config_.method.renderer, scene, config_.folder, warnings_);
+}
+
+bool Session::writePage() const
+{
+    try
+    {
+        const Report page = readRunReport(config_.folder, config_.truth, warnings_.sink());
+        writeReport(page, (fs::path(config_.folder) / "report.html").string());
+        return true;
+    }
+    catch (const std::exception& e)
+    {
+        warnings_.add({0, "no_report", e.what()});
+        return false;
+    }
 }
 
 void Session::writeMetrics(const StreamProgress& log, bool incomplete, bool interrupted)

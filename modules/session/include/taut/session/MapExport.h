@@ -6,6 +6,7 @@
 
 #include "taut/core/Config.h"
 #include "taut/core/NavState.h"
+#include "taut/core/Scan.h"
 #include "taut/core/ThinnedSample.h"
 #include "taut/core/VoxelSet.h"
 #include "taut/files/PlyFile.h"
@@ -34,7 +35,10 @@ class MapExport
  public:
     MapExport(const MapExportConfig& config, const std::string& folder);
 
-    void add(const NavState& state, const std::vector<Vector3d>& points_world);
+    /** `raw`: the same points as they were measured, for their intensity; empty: not known. */
+    void add(
+        const NavState& state, const std::vector<Vector3d>& points_world,
+        const std::vector<LidarPoint>& raw = {});
 
     /** Completes map.ply, map.ot and map.bt. */
     void finish(const WarningSink& warn);
@@ -57,7 +61,7 @@ class MapExport
     double occupancyResolution() const { return occupancy_resolution_; }
 
  private:
-    void addPoint(const Vector3d& p);
+    void addPoint(const Vector3d& p, float intensity);
     bool isKey(const NavState& state) const;
 
     MapExportConfig config_;

@@ -12,6 +12,7 @@
 #include "taut/session/ResultFiles.h"
 #include "taut/session/SecondPass.h"
 #include "taut/slam/Mapper.h"
+#include "taut/trajectory/Trajectory.h"
 
 namespace taut
 {
@@ -25,6 +26,8 @@ struct SessionConfig
     std::optional<KnownMap> known_map;  //!< that the run is joined to; loops have to be on
     int threads = 1;
     bool pictures = true;
+    bool report = true;  //!< write report.html, of the other results
+    Trajectory truth;    //!< that it is to compare the run with; empty: none
 };
 
 /** How a session ended. Poses, map and metrics are on the disk in any case. */
@@ -38,7 +41,7 @@ struct SessionOutcome
     std::size_t submaps = 0, loops = 0;  //!< loops: that are believed
     bool corrected = false;              //!< the path is not the odometry's any more
     bool undistorted_again = false;      //!< every point, along the path that the loops corrected
-    bool pictures_failed = false;
+    bool pictures_failed = false, report_failed = false;
     bool interrupted = false;
     /** A part of the input was not used, or a stretch of the pose is in doubt: metrics.json tells
      * which. */
@@ -98,6 +101,7 @@ class Session
     std::string processAll(
         MeasurementStream& log, const std::function<bool(double)>& go_on, bool& interrupted);
     bool drawPictures() const;
+    bool writePage() const;
     std::vector<std::string> caption() const;
     void writeMetrics(const StreamProgress& log, bool incomplete, bool interrupted);
     bool usedPartly(const StreamProgress& log, bool incomplete) const;
