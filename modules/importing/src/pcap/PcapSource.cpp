@@ -22,9 +22,10 @@ class PcapSource : public ImportSource
     PcapSource(const Recording& recording, const ImportOptions& options, WarningSink warn)
         : path_(recording.path.string()), reader_(path_), warn_(std::move(warn))
     {
-        addSensor(makeVelodyneDecoder(options.capture_clock));
+        const StampClock clock = options.capture_clock ? StampClock::Capture : StampClock::Sensor;
+        addSensor(makeVelodyneDecoder(clock));
         if (const auto info = findDescription(recording.path, options))
-            addSensor(makeOusterDecoder(*info, options.capture_clock));
+            addSensor(makeOusterDecoder(*info, clock));
     }
 
     std::optional<ImportedItem> next() override

@@ -11,6 +11,7 @@ namespace taut
 namespace
 {
 constexpr Duration kHour = 3'600'000'000'000;
+constexpr Duration kClose = 500'000'000;
 
 /** The time with these microseconds past the hour that is closest to `near`. */
 Time inHourClosestTo(Time near, std::uint32_t microseconds)
@@ -38,7 +39,7 @@ std::string nameOf(const velodyne::PacketInfo& info)
 class VelodyneDecoder : public PacketDecoder
 {
  public:
-    explicit VelodyneDecoder(bool capture_clock) : capture_clock_(capture_clock) {}
+    explicit VelodyneDecoder(StampClock clock) : clock_(clock) {}
 
     std::string make() const override { return "Velodyne"; }
 
@@ -58,6 +59,8 @@ class VelodyneDecoder : public PacketDecoder
         info_ = velodyne::packetInfo(packet.data());
         first_ = inHourClosestTo(datagram.captured, info_.microseconds);
         clock_ahead_ = first_ - datagram.captured;
+        by_capture_ = clock_ == StampClock::Capture ||
+                      (clock_ == StampClock::SensorIfClose && std::abs(clock_ahead_) > kClose);
     }
 
     void finish(ImportedItems& items, const WarningSink&) override
@@ -77,7 +80,7 @@ class VelodyneDecoder : public PacketDecoder
         char text[160];
         std::snprintf(
             text, sizeof text,
-            capture_clock_
+            by_capture_
                 ? "stamps: when the capture says; the sensor's clock is %.3f s ahead (modulo 1 h)"
                 : "stamps: the sensor's time past the hour, in the hour of the capture, whose "
                   "clock it is %.3f s ahead of",
@@ -89,11 +92,12 @@ class VelodyneDecoder : public PacketDecoder
  private:
     PacketScan stamped(VelodyneSweep sweep) const
     {
-        sweep.scan.stamp = capture_clock_ ? sweep.captured : first_ + sweep.scan.stamp;
+        sweep.scan.stamp = by_capture_ ? sweep.captured : first_ + sweep.scan.stamp;
         return std::move(sweep.scan);
     }
 
-    bool capture_clock_;
+    StampClock clock_;
+    bool by_capture_ = false;
     VelodyneSweeps sweeps_;
     std::size_t packets_ = 0;
     velodyne::PacketInfo info_;
@@ -102,8 +106,8 @@ class VelodyneDecoder : public PacketDecoder
 };
 }  // namespace
 
-std::unique_ptr<PacketDecoder> makeVelodyneDecoder(bool capture_clock)
+std::unique_ptr<PacketDecoder> makeVelodyneDecoder(StampClock clock)
 {
-    return std::make_unique<VelodyneDecoder>(capture_clock);
+    return std::make_unique<VelodyneDecoder>(clock);
 }
 }  // namespace taut

@@ -14,6 +14,14 @@ namespace taut
 {
 using ImportedItems = std::deque<ImportedItem>;
 
+/** Whose clock the stamps are of. */
+enum class StampClock
+{
+    Sensor,
+    Capture,       //!< of the computer that took the packets
+    SensorIfClose  //!< the sensor's if it is within half a second of the computer's
+};
+
 /** What one make of sensor sends, to what it measured. */
 class PacketDecoder
 {
@@ -38,7 +46,6 @@ class PacketDecoder
     virtual std::vector<std::string> findings() const = 0;
 };
 
-std::unique_ptr<PacketDecoder> makeVelodyneDecoder(bool capture_clock);
-std::unique_ptr<PacketDecoder> makeOusterDecoder(
-    const ouster::SensorInfo& info, bool capture_clock);
+std::unique_ptr<PacketDecoder> makeVelodyneDecoder(StampClock clock);
+std::unique_ptr<PacketDecoder> makeOusterDecoder(const ouster::SensorInfo& info, StampClock clock);
 }  // namespace taut
