@@ -14,6 +14,13 @@ class SweepStamps
  public:
     explicit SweepStamps(StampClock clock) : clock_(clock) {}
 
+    /** Looks at the clock of the sensor: `t` by it, `captured` by the computer. The first call
+     * counts; note() and of() do the same. */
+    void decide(Time t, Time captured);
+
+    /** True if stamps are the computer's. */
+    bool byCapture() const { return by_capture_; }
+
     /** A packet in the order of arrival, whose last measurement was at `t` by the sensor. */
     void note(Time t, Time captured);
 
@@ -28,8 +35,6 @@ class SweepStamps
     std::string finding() const;
 
  private:
-    void decide(Time t, Time captured);
-
     StampClock clock_;
     bool decided_ = false, by_capture_ = false;
     Duration shift_ = 0;                // whole seconds to the day of the capture
