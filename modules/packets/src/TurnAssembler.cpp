@@ -31,9 +31,12 @@ void TurnAssembler::beginBlock(int azimuth, Time t, std::vector<Scan>& complete)
 void TurnAssembler::step(int azimuth, std::vector<Scan>& complete)
 {
     const int plain = azimuth - last_azimuth_;
-    const int step = wrapped(plain);
-    const bool passed_zero = plain != step;
+    int step = wrapped(plain);
     const bool gap = std::abs(step) > kGap;
+    if (!gap && step != 0) forward_ = step > 0;
+    if (gap)  // whichever way is shorter, the head went on
+        step = forward_ ? (plain + kFullTurn) % kFullTurn : -((kFullTurn - plain) % kFullTurn);
+    const bool passed_zero = plain != step;
     travelled_ += step;
     const bool whole_turn = std::abs(travelled_) >= kFullTurn;
     switch (cut_)
@@ -47,7 +50,7 @@ void TurnAssembler::step(int azimuth, std::vector<Scan>& complete)
                 zero_at_ = points_.size();
             break;
         case Cut::InGap:
-            if (whole_turn) cut_ = Cut::AtZero;  // that gap was lost, not left out
+            if (whole_turn && !gap) cut_ = Cut::AtZero;  // that gap was lost, not left out
             if (gap || whole_turn) close(complete);
             break;
         case Cut::AtZero:

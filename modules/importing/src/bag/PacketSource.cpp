@@ -10,6 +10,7 @@
 #include "OusterDescription.h"
 #include "TopicChoice.h"
 #include "taut/importing/pcap/PacketDecoder.h"
+#include "taut/packets/hesai/Correction.h"
 #include "taut/packets/ouster/Decoder.h"
 
 namespace taut::bag
@@ -104,6 +105,10 @@ class PacketSource : public ImportSource
         {
             throw std::runtime_error(path_ + ": " + e.what());
         }
+        catch (const hesai::CorrectionError&)
+        {
+            throw;
+        }
         catch (const std::runtime_error& e)
         {
             fail(received, "message_invalid", message.topic, e.what());
@@ -146,6 +151,10 @@ class PacketSource : public ImportSource
             decoded_ += port == lidar_port_ ? 1 : 0;
         }
         catch (const ouster::DescriptionError&)
+        {
+            throw;
+        }
+        catch (const hesai::CorrectionError&)
         {
             throw;
         }
@@ -231,6 +240,7 @@ std::unique_ptr<ImportSource> openPackets(
         source->decodeBy(std::move(decoders), info.lidar_port, info.imu_port);
         return source;
     }
+    decoders.push_back(makeHesaiDecoder(path, options.hesai_csv, clock));
     decoders.push_back(makeVelodyneDecoder(clock));
     source->decodeBy(std::move(decoders));
     return source;

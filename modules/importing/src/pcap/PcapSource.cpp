@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "taut/importing/pcap/PacketDecoder.h"
+#include "taut/packets/hesai/Correction.h"
 #include "taut/packets/ouster/Decoder.h"
 
 namespace taut
@@ -24,6 +25,7 @@ class PcapSource : public ImportSource
     {
         const StampClock clock = options.capture_clock ? StampClock::Capture : StampClock::Sensor;
         addSensor(makeVelodyneDecoder(clock));
+        addSensor(makeHesaiDecoder(path_, options.hesai_csv, clock));
         if (const auto info = findDescription(recording.path, options))
             addSensor(makeOusterDecoder(*info, clock));
     }
@@ -104,6 +106,10 @@ class PcapSource : public ImportSource
             sensor.decoder->add(datagram, items_);
             sensor.from = datagram.from;
             sensor.decoded++;
+        }
+        catch (const hesai::CorrectionError&)
+        {
+            throw;
         }
         catch (const ouster::DescriptionError& e)
         {

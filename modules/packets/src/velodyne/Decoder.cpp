@@ -60,7 +60,8 @@ double turningRate(const std::uint8_t* packet, const PacketInfo& info, double ot
     for (int block = blocks_per_firing; block < usedBlocks(info); block += blocks_per_firing)
         steps.push_back(azimuthBetween(packet, block - blocks_per_firing, block));
     if (steps.empty()) return otherwise;
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    // Of two steps the shorter one: the other may be a leap.
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) / 2);
     std::nth_element(steps.begin(), middle, steps.end());
     return *middle * kAzimuthUnit / pattern.blockPeriod();  // [deg/ns]
 }

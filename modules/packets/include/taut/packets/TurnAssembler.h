@@ -46,8 +46,9 @@ class TurnAssembler
     int rings_;
     Cut cut_ = Cut::Unknown;
     int last_azimuth_ = -1;
-    int travelled_ = 0;  // [0.01 deg], since the first block or the last gap
-    Time base_ = 0;      // of the points' offsets
+    bool forward_ = true;  // clockwise
+    int travelled_ = 0;    // [0.01 deg], since the first block or the last gap
+    Time base_ = 0;        // of the points' offsets
     std::vector<LidarPoint> points_;
     std::optional<std::size_t> zero_at_;  // points before the azimuth passed zero, if not cut there
 };
