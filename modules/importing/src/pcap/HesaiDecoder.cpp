@@ -10,6 +10,8 @@ namespace taut
 {
 namespace
 {
+constexpr std::size_t kFewestBytes = 500;
+
 std::string returnsText(int returns)
 {
     if (returns == 1) return "one return";
@@ -28,7 +30,9 @@ class HesaiDecoder : public PacketDecoder
 
     bool recognises(const UdpDatagram& datagram) const override
     {
-        return hesai::modelOf(datagram.payload.data(), datagram.payload.size()).has_value();
+        const auto& bytes = datagram.payload;
+        const bool has_header = bytes.size() > kFewestBytes && bytes[0] == 0xee && bytes[1] == 0xff;
+        return has_header || hesai::modelOf(bytes.data(), bytes.size()).has_value();
     }
 
     void add(const UdpDatagram& datagram, ImportedItems& items) override

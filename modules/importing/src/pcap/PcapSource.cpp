@@ -25,9 +25,9 @@ class PcapSource : public ImportSource
     {
         const StampClock clock = options.capture_clock ? StampClock::Capture : StampClock::Sensor;
         addSensor(makeVelodyneDecoder(clock));
-        addSensor(makeHesaiDecoder(path_, options.hesai_csv, clock));
         if (const auto info = findDescription(recording.path, options))
             addSensor(makeOusterDecoder(*info, clock));
+        addSensor(makeHesaiDecoder(path_, options.hesai_csv, clock));
     }
 
     std::optional<ImportedItem> next() override
