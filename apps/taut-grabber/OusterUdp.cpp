@@ -50,7 +50,7 @@ void OusterUdp::initialize()
     info.imu_port = portOr(imu_port_, info.imu_port);
     if (info.lidar_port == info.imu_port)
         throw std::runtime_error("lidar_port and imu_port must differ");
-    decoder_ = makeOusterDecoder(info, computer_clock_);
+    decoder_ = makeOusterDecoder(info, computer_clock_ ? StampClock::Capture : StampClock::Sensor);
     receiver_ = std::make_unique<UdpReceiver>(
         bind_address_, std::vector<std::uint16_t>{info.lidar_port, info.imu_port});
     m_state = ssWorking;

@@ -40,6 +40,11 @@ bool parseOptions(int argc, char** argv, Options& o)
         "Description of the Ouster that sent the packets (default: the name of the capture with "
         ".json)",
         false, "", "SENSOR.json", cmd);
+    TCLAP::ValueArg<std::string> hesai(
+        "", "hesai-csv",
+        "Correction file of the Hesai that sent the packets (default: one beside the recording, "
+        "else the data sheet's angles)",
+        false, "", "ANGLES.csv", cmd);
     TCLAP::SwitchArg capture(
         "", "capture-clock",
         "Stamps by the computer that captured the packets, instead of the sensor's clock", cmd);
@@ -65,6 +70,7 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.lidar_label = lidar.getValue();
     o.imu_label = imu.getValue();
     o.import.ouster_json = ouster.getValue();
+    o.import.hesai_csv = hesai.getValue();
     o.import.capture_clock = capture.getValue();
     o.import.lidar_topic = lidar_topic.getValue();
     o.import.imu_topic = imu_topic.getValue();

@@ -82,7 +82,15 @@ class OusterSimulator
     {
         const bool legacy = profile == "LEGACY";
         Bytes bytes;
-        if (!legacy)
+        if (isFusa())
+        {
+            put<std::uint32_t>(bytes, 1);
+            put<std::uint32_t>(bytes, frame);
+            bytes.insert(bytes.end(), 3, 0);
+            for (int i = 0; i < 5; i++) put<std::uint8_t>(bytes, serial >> (8 * i) & 255);
+            bytes.resize(32);
+        }
+        else if (!legacy)
         {
             put<std::uint16_t>(bytes, 1);
             put<std::uint16_t>(bytes, frame);
@@ -108,6 +116,8 @@ class OusterSimulator
     }
 
  private:
+    bool isFusa() const { return profile == "FUSA_RNG15_RFL8_NIR8_DUAL"; }
+
     template <class To, class From>
     static void put(Bytes& bytes, From value)
     {
@@ -153,6 +163,7 @@ class OusterSimulator
             put<std::uint16_t>(bytes, mm / 8 | 0x8000U);
             put<std::uint8_t>(bytes, reflectivity);
             bytes.push_back(0xff);
+            if (profile != "RNG15_RFL8_NIR8") bytes.insert(bytes.end(), 4, 0xff);
         }
     }
 };

@@ -69,8 +69,8 @@ TEST_F(ABag, WithoutALidarListsItsTopics)
 TEST_F(ABag, OfUnknownMessagesFails)
 {
     auto messages = sweeps();
-    for (auto& m : messages) m.type = "velodyne_msgs/VelodyneScan";
-    EXPECT_THAT(failure(write(messages)), HasSubstr("velodyne_msgs/VelodyneScan"));
+    for (auto& m : messages) m.type = "radar_msgs/RadarScan";
+    EXPECT_THAT(failure(write(messages)), HasSubstr("radar_msgs/RadarScan"));
 }
 
 TEST_F(ABag, WithoutAnImuSaysSo)

@@ -76,7 +76,8 @@ TEST_P(AnOuster, GivesTheSamePointsThroughItsPackets)
 INSTANTIATE_TEST_SUITE_P(
     Profiles, AnOuster,
     testing::Values(
-        "LEGACY", "RNG19_RFL8_SIG16_NIR16", "RNG19_RFL8_SIG16_NIR16_DUAL", "RNG15_RFL8_NIR8"),
+        "LEGACY", "RNG19_RFL8_SIG16_NIR16", "RNG19_RFL8_SIG16_NIR16_DUAL", "RNG15_RFL8_NIR8",
+        "RNG15_RFL8_NIR8_DUAL", "FUSA_RNG15_RFL8_NIR8_DUAL"),
     [](const auto& parameter) { return std::string(parameter.param); });
 
 class AnOusterCapture : public testing::Test

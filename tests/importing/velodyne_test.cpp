@@ -226,12 +226,12 @@ TEST_F(AVelodyneCapture, WithASnapLengthIsNoCaptureOfASensor)
 TEST_F(AVelodyneCapture, OfAnUnknownModelIsNamed)
 {
     auto sent = packets(Model::Vlp16, kStart, 3);
-    for (auto& packet : sent) packet[velodyne::kPacketBytes - 1] = 0x28;
+    for (auto& packet : sent) packet[velodyne::kPacketBytes - 1] = 0x24;
     {
         PcapWriter pcap(path_);
         for (const auto& packet : sent) pcap.write(kStart, 2368, packet);
     }
-    EXPECT_THAT(importAll(path_).failure, HasSubstr("model 0x28"));
+    EXPECT_THAT(importAll(path_).failure, HasSubstr("model 0x24"));
 }
 
 TEST_F(AVelodyneCapture, KeepsItsGoodPacketsWhereOneIsDamaged)

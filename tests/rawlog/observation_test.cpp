@@ -173,7 +173,7 @@ TEST_F(RawPackets, ThatCannotBeDecodedAreSkippedWithTheCause)
     PacketScan scan;
     scan.stamp = kStart;
     scan.packets = packets(0);
-    scan.packets[1].back() = 0x28;
+    scan.packets[1].back() = 0x24;
     writer.write(scan);
     scan.stamp += 100 * kMillisecond;
     scan.packets = packets(0);
@@ -182,7 +182,7 @@ TEST_F(RawPackets, ThatCannotBeDecodedAreSkippedWithTheCause)
     const auto log = readAll(path("a.rawlog"));
     EXPECT_EQ(log.scans.size(), 1u);
     ASSERT_EQ(log.warnings.count("scan_invalid"), 1u);
-    EXPECT_THAT(log.warnings.kept()[0].text, HasSubstr("0x28"));
+    EXPECT_THAT(log.warnings.kept()[0].text, HasSubstr("0x24"));
 }
 
 TEST_F(RawPackets, TakePrecedenceOverACloudThatMayHaveLostHalfOfThem)

@@ -271,8 +271,8 @@ TEST(VelodyneDecoder, NamesWhatItCannotDecode)
     EXPECT_EQ(message(packet, calibration), "");
     EXPECT_THAT(
         message(packet, defaultCalibration(Model::Hdl32)), HasSubstr("32 lasers, the sensor 16"));
-    packet[kPacketBytes - 1] = 0x28;
-    EXPECT_THAT(message(packet, calibration), HasSubstr("model 0x28"));
+    packet[kPacketBytes - 1] = 0x24;
+    EXPECT_THAT(message(packet, calibration), HasSubstr("model 0x24"));
     packet[kPacketBytes - 1] = 0x22;
     packet[kPacketBytes - 2] = 0;
     EXPECT_THAT(message(packet, calibration), HasSubstr("mode 0x00"));

@@ -8,6 +8,8 @@
 #include "BagKind.h"
 #include "BagReader.h"
 #include "Decompress.h"
+#include "Messages.h"
+#include "PacketSource.h"
 #include "SweepClock.h"
 #include "TopicChoice.h"
 
@@ -28,24 +30,49 @@ const std::vector<std::string> kSweepTypes{
     kCloudType, "livox_ros_driver/CustomMsg", "livox_ros_driver2/CustomMsg",
     "livox_interfaces/CustomMsg"};
 
+bool hasMessages(const std::vector<BagTopic>& topics)
+{
+    return std::any_of(topics.begin(), topics.end(), [](const auto& t) { return !t.empty; });
+}
+
+/** The LiDAR's topic: of clouds, or of packets where no clouds are meant. */
+BagTopic chooseLidar(
+    const std::string& path, const std::vector<BagTopic>& topics, const std::string& expression)
+{
+    const std::string option = "--lidar-topic";
+    std::vector<BagTopic> packets;
+    std::vector<std::string> types;
+    for (const BagTopic& topic : topics)
+    {
+        if (!isPacketType(topic.type) || isOusterImu(topic)) continue;
+        packets.push_back(topic);
+        types.push_back(topic.type);
+    }
+    const bool by_packets = !hasMessages(matching(topics, kSweepTypes, expression, option)) &&
+                            hasMessages(matching(packets, types, expression, option));
+    const auto lidar = by_packets ? chooseTopic(packets, types, expression, option)
+                                  : chooseTopic(topics, kSweepTypes, expression, option);
+    if (!lidar)
+        throw std::runtime_error(
+            path + " has no topic of a LiDAR (sensor_msgs/PointCloud2, Livox CustomMsg, packets " +
+            "of Velodyne, Hesai or Ouster); its topics: " + describe(topics));
+    return *lidar;
+}
+
 class BagSource : public ImportSource
 {
  public:
-    BagSource(std::string path, const ImportOptions& options, const WarningSink& warn)
+    BagSource(
+        std::string path, std::unique_ptr<BagReader> reader, BagTopic lidar,
+        const ImportOptions& options, const WarningSink& warn)
         : path_(std::move(path)),
           warn_(warn),
-          reader_(openBagReader(path_, warn)),
+          reader_(std::move(reader)),
+          lidar_(std::move(lidar)),
           clock_(options.scan_stamp, warn)
     {
-        const auto topics = reader_->topics();
-        const auto lidar = chooseTopic(topics, kSweepTypes, options.lidar_topic, "--lidar-topic");
-        if (!lidar)
-            throw std::runtime_error(
-                path_ + " has no topic of a LiDAR (sensor_msgs/PointCloud2, Livox CustomMsg); " +
-                "its topics: " + describe(topics));
-        lidar_ = *lidar;
         std::vector<std::string> names{lidar_.name};
-        imu_ = chooseTopic(topics, {kImuType}, options.imu_topic, "--imu-topic");
+        imu_ = chooseTopic(reader_->topics(), {kImuType}, options.imu_topic, "--imu-topic");
         if (imu_) names.push_back(imu_->name);
         reader_->choose(names);
         judged_.push_back("LiDAR: topic " + describe({lidar_}));
@@ -130,14 +157,8 @@ class BagSource : public ImportSource
 
     Pending decode(const BagMessage& message) const
     {
-        std::vector<std::uint8_t> plain;
-        Bytes data = message.data;
-        if (isZstd(data))  // rosbag2 can compress each message; no message begins like that
-        {
-            plain = decompress("zstd", data);
-            data = {plain.data(), plain.size()};
-        }
-        const WireReader reader(data, message.wire);
+        std::vector<std::uint8_t> buffer;
+        const WireReader reader(plainMessage(message.data, buffer), message.wire);
         if (imu_ && message.topic == imu_->name) return readImu(reader);
         RawSweep sweep = lidar_.type == kCloudType ? toRawSweep(readPointCloud2(reader))
                                                    : toRawSweep(readLivox(reader));
@@ -224,6 +245,10 @@ bool isBag(const Recording& recording)
 std::unique_ptr<ImportSource> openBag(
     const Recording& recording, const ImportOptions& options, const WarningSink& warn)
 {
-    return std::make_unique<BagSource>(recording.path.string(), options, warn);
+    const std::string path = recording.path.string();
+    auto reader = openBagReader(path, warn);
+    const BagTopic lidar = chooseLidar(path, reader->topics(), options.lidar_topic);
+    if (isPacketType(lidar.type)) return openPackets(path, std::move(reader), lidar, options, warn);
+    return std::make_unique<BagSource>(path, std::move(reader), lidar, options, warn);
 }
 }  // namespace taut

@@ -8,9 +8,9 @@ namespace taut
 bool isBag(const Recording& recording);
 
 /** Reads a ROS 1 bag (format 2.0) or a ROS 2 bag (MCAP, sqlite3; a file or the bag's folder):
- * sweeps from sensor_msgs/PointCloud2 and Livox CustomMsg, readings from sensor_msgs/Imu. Scans
- * have their points' own times and the stamp of the first of them, no label and no pose. Readings
- * are as the message has them.
+ * sweeps from sensor_msgs/PointCloud2 and Livox CustomMsg, or from packets (PacketSource.h);
+ * readings from sensor_msgs/Imu. Scans have their points' own times and the stamp of the first of
+ * them, no label and no pose. Readings are as the message has them.
  *
  * The first sweeps are read ahead to judge what times and stamps mean; see findings().
  * Warnings:

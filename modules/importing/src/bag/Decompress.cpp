@@ -150,4 +150,11 @@ bool isZstd(Bytes data)
 {
     return data.size >= 4 && ByteReader::numberAt<std::uint32_t>(data.data, false) == 0xFD2FB528;
 }
+
+Bytes plainMessage(Bytes message, std::vector<std::uint8_t>& buffer)
+{
+    if (!isZstd(message)) return message;
+    buffer = decompress("zstd", message);
+    return {buffer.data(), buffer.size()};
+}
 }  // namespace taut::bag

@@ -16,4 +16,8 @@ std::vector<std::uint8_t> decompress(
 
 /** True if the bytes begin as a zstd frame does. */
 bool isZstd(Bytes data);
+
+/** A message without the compression that rosbag2 can give each one (no message begins as zstd
+ * does); what it comes to lies in `buffer`. Throws std::runtime_error if it is damaged. */
+Bytes plainMessage(Bytes message, std::vector<std::uint8_t>& buffer);
 }  // namespace taut::bag

@@ -4,17 +4,68 @@ namespace taut::bag
 {
 namespace
 {
-/** std_msgs/Header; the frame's name is not needed: extrinsics come from the rig. */
-Time readHeader(WireReader& reader)
+constexpr std::size_t kVelodyneBytes = 1206, kPandarBytes = 1500;  // of a packet's field
+
+Time readTime(WireReader& reader)
 {
-    if (reader.wire() == Wire::Ros1) reader.number<std::uint32_t>();  // seq
     // Unsigned in ROS 1, signed in ROS 2: the same until 2038.
     const Time seconds = reader.wire() == Wire::Ros1 ? Time{reader.number<std::uint32_t>()}
                                                      : Time{reader.number<std::int32_t>()};
     const Time nanoseconds = reader.number<std::uint32_t>();
     if (nanoseconds >= 1'000'000'000) throw std::runtime_error("its stamp is not a time");
-    reader.text();
     return seconds * 1'000'000'000 + nanoseconds;
+}
+
+/** std_msgs/Header; the frame's name is not needed: extrinsics come from the rig. */
+Time readHeader(WireReader& reader)
+{
+    if (reader.wire() == Wire::Ros1) reader.number<std::uint32_t>();  // seq
+    const Time stamp = readTime(reader);
+    reader.text();
+    return stamp;
+}
+
+RawPacket readVelodynePacket(WireReader& reader)
+{
+    const Time stamp = readTime(reader);
+    return {stamp, reader.array(kVelodyneBytes)};
+}
+
+RawPacket readPandarPacket(WireReader& reader)
+{
+    const Time stamp = readTime(reader);
+    const Bytes field = reader.array(kPandarBytes);
+    const std::size_t size = reader.number<std::uint32_t>();
+    if (size > field.size)
+        throw std::runtime_error(
+            "a packet says that it has " + std::to_string(size) + " bytes in a field of " +
+            std::to_string(field.size));
+    return {stamp, {field.data, size}};
+}
+
+RawPacket readNebulaPacket(WireReader& reader)
+{
+    const Time stamp = readTime(reader);
+    return {stamp, reader.bytes()};
+}
+
+/** How one packet of a message lies in it. */
+struct PacketType
+{
+    const char* name;
+    std::size_t smallest;  // bytes
+    RawPacket (*read)(WireReader& reader);
+};
+
+const PacketType* findPacketType(const std::string& type)
+{
+    static const PacketType types[] = {
+        {"velodyne_msgs/VelodyneScan", 8 + kVelodyneBytes, readVelodynePacket},
+        {"pandar_msgs/PandarScan", 8 + kPandarBytes + 4, readPandarPacket},
+        {"nebula_msgs/NebulaPackets", 8 + 4, readNebulaPacket}};
+    for (const PacketType& known : types)
+        if (type == known.name) return &known;
+    return nullptr;
 }
 
 Vector3d readVector(WireReader& reader)
@@ -70,6 +121,27 @@ Livox readLivox(WireReader reader)
         point.line = reader.number<std::uint8_t>();
     }
     return sweep;
+}
+
+bool isOusterPacketType(const std::string& type)
+{
+    return type == "ouster_ros/PacketMsg" || type == "ouster_sensor_msgs/PacketMsg";
+}
+
+bool isPacketType(const std::string& type)
+{
+    return isOusterPacketType(type) || findPacketType(type) != nullptr;
+}
+
+std::vector<RawPacket> readPackets(const std::string& type, WireReader reader)
+{
+    if (isOusterPacketType(type)) return {{0, reader.bytes()}};
+    const PacketType* known = findPacketType(type);
+    if (known == nullptr) throw std::logic_error(type + " holds no packets");
+    readHeader(reader);
+    std::vector<RawPacket> packets(reader.sequence(known->smallest));
+    for (RawPacket& packet : packets) packet = known->read(reader);
+    return packets;
 }
 
 ImuSample readImu(WireReader reader)

@@ -44,9 +44,23 @@ struct Livox
     std::vector<LivoxPoint> points;
 };
 
+/** One UDP payload of a sensor. */
+struct RawPacket
+{
+    Time stamp = 0;  //!< when the driver took it; 0 if the message does not tell
+    Bytes data;      //!< in the message
+};
+
+/** True for velodyne_msgs/VelodyneScan, pandar_msgs/PandarScan, nebula_msgs/NebulaPackets, and the
+ * PacketMsg of ouster_ros and ouster_sensor_msgs. */
+bool isPacketType(const std::string& type);
+bool isOusterPacketType(const std::string& type);
+
 /** All throw std::runtime_error if the bytes are no such message. */
 PointCloud2 readPointCloud2(WireReader reader);
 Livox readLivox(WireReader reader);
+/** The packets of a message of such a type. */
+std::vector<RawPacket> readPackets(const std::string& type, WireReader reader);
 /** sensor_msgs/Imu, in the units of the message. */
 ImuSample readImu(WireReader reader);
 }  // namespace taut::bag

@@ -126,7 +126,8 @@ class Sqlite3Bag : public BagReader
             prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
         for (std::int64_t id = kBeforeAll; step(rows, id);)
         {
-            const bool cdr = textAt(rows, 3) == "cdr";
+            const std::string format = textAt(rows, 3);
+            const bool cdr = format.empty() || format == "cdr";  // scripts leave it out
             topics[id] = {textAt(rows, 1), cdr ? plainType(textAt(rows, 2)) : "", Wire::Cdr, false};
         }
         return topics;

@@ -31,7 +31,7 @@ std::string describe(const std::vector<BagTopic>& topics)
     return text.empty() ? "none" : text;
 }
 
-std::optional<BagTopic> chooseTopic(
+std::vector<BagTopic> matching(
     const std::vector<BagTopic>& topics, const std::vector<std::string>& types,
     const std::string& expression, const std::string& option)
 {
@@ -41,6 +41,14 @@ std::optional<BagTopic> chooseTopic(
         if (std::find(types.begin(), types.end(), topic.type) != types.end() &&
             (expression.empty() || std::regex_match(topic.name, regex)))
             found.push_back(topic);
+    return found;
+}
+
+std::optional<BagTopic> chooseTopic(
+    const std::vector<BagTopic>& topics, const std::vector<std::string>& types,
+    const std::string& expression, const std::string& option)
+{
+    std::vector<BagTopic> found = matching(topics, types, expression, option);
     if (found.size() > 1)
         found.erase(
             std::remove_if(found.begin(), found.end(), [](const BagTopic& t) { return t.empty; }),

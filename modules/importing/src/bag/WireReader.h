@@ -47,6 +47,9 @@ class WireReader
     /** A sequence of bytes, not copied. */
     Bytes bytes() { return reader_.take(number<std::uint32_t>()); }
 
+    /** An array of so many bytes, not copied. */
+    Bytes array(std::size_t count) { return reader_.take(count); }
+
  private:
     static constexpr std::size_t kEncapsulation = 4;
 

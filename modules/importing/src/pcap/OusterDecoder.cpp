@@ -1,7 +1,4 @@
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-
+#include "SweepStamps.h"
 #include "taut/importing/pcap/PacketDecoder.h"
 #include "taut/packets/ouster/Decoder.h"
 
@@ -9,14 +6,11 @@ namespace taut
 {
 namespace
 {
-constexpr Time kYear2000 = 946'684'800'000'000'000;
-constexpr Duration kSecond = 1'000'000'000;
-
 class OusterDecoder : public PacketDecoder
 {
  public:
-    OusterDecoder(const ouster::SensorInfo& info, bool capture_clock)
-        : info_(info), frames_(info), capture_clock_(capture_clock)
+    OusterDecoder(const ouster::SensorInfo& info, StampClock clock)
+        : info_(info), frames_(info), stamps_(clock)
     {
     }
 
@@ -57,24 +51,14 @@ class OusterDecoder : public PacketDecoder
         if (lidar_packets_ + imu_packets_ == 0) return {};
         std::vector<std::string> lines{
             "Ouster " + info_.model + ": " + std::to_string(lidar_packets_) + " lidar and " +
-                std::to_string(imu_packets_) + " IMU packets",
-            "IMU: converted from g and deg/s, as the sensor gives them"};
+            std::to_string(imu_packets_) + " IMU packets"};
+        if (imu_packets_ > 0)
+            lines.emplace_back("IMU: converted from g and deg/s, as the sensor gives them");
         if (incomplete_ > 0)
             lines.push_back(
                 std::to_string(incomplete_) + " turns of " + std::to_string(turns_) +
                 " have fewer than " + std::to_string(info_.columns_per_frame) + " columns");
-        char text[160];
-        if (capture_clock_)
-            std::snprintf(text, sizeof text, "stamps: when the capture says");
-        else if (shift_ == 0)
-            std::snprintf(text, sizeof text, "stamps: the sensor's clock");
-        else
-            std::snprintf(
-                text, sizeof text,
-                "stamps: the sensor's clock, which counts from its start, put on the day of the "
-                "capture: %.0f s added",
-                toSeconds(shift_));
-        lines.emplace_back(text);
+        lines.push_back(stamps_.finding());
         return lines;
     }
 
@@ -94,7 +78,7 @@ class OusterDecoder : public PacketDecoder
                 " bytes instead of 48");
         ImuSample sample = ouster::decodeImu(datagram.payload.data());
         imu_packets_++;
-        sample.t = capture_clock_ ? datagram.captured : onCalendar(sample.t, datagram.captured);
+        sample.t = stamps_.of(sample.t, datagram.captured);
         items.emplace_back(sample);
     }
 
@@ -103,43 +87,26 @@ class OusterDecoder : public PacketDecoder
         auto frame = frames_.add(datagram.payload.data(), datagram.payload.size());
         lidar_packets_++;
         if (frame) give(std::move(*frame), items);
-        const auto t = frames_.packetTime();
-        if (!t) return;
-        onCalendar(*t, datagram.captured);
-        delays_ = std::min(delays_.value_or(datagram.captured - *t), datagram.captured - *t);
+        if (const auto t = frames_.packetTime()) stamps_.note(*t, datagram.captured);
     }
 
     void give(ouster::Frame frame, ImportedItems& items)
     {
         turns_++;
         if (frame.columns < info_.columns_per_frame) incomplete_++;
-        const Duration shift = capture_clock_ ? delays_.value_or(0) : shift_;
-        frame.scan.stamp += shift;
-        frame.scan.end += shift;
-        delays_.reset();
+        stamps_.apply(frame.scan);
         items.emplace_back(std::move(frame.scan));
-    }
-
-    /** A clock that counts from the sensor's start is moved by whole seconds. */
-    Time onCalendar(Time t, Time captured)
-    {
-        if (!clock_known_ && t < kYear2000)
-            shift_ = (captured - t + kSecond / 2) / kSecond * kSecond;
-        clock_known_ = true;
-        return t + shift_;
     }
 
     ouster::SensorInfo info_;
     ouster::FrameAssembler frames_;
-    bool capture_clock_, clock_known_ = false;
-    Duration shift_ = 0;
-    std::optional<Duration> delays_;  // the shortest from measurement to capture in this turn
+    SweepStamps stamps_;
     std::size_t lidar_packets_ = 0, imu_packets_ = 0, turns_ = 0, incomplete_ = 0;
 };
 }  // namespace
 
-std::unique_ptr<PacketDecoder> makeOusterDecoder(const ouster::SensorInfo& info, bool capture_clock)
+std::unique_ptr<PacketDecoder> makeOusterDecoder(const ouster::SensorInfo& info, StampClock clock)
 {
-    return std::make_unique<OusterDecoder>(info, capture_clock);
+    return std::make_unique<OusterDecoder>(info, clock);
 }
 }  // namespace taut

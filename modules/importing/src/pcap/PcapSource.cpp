@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "taut/importing/pcap/PacketDecoder.h"
+#include "taut/packets/hesai/Correction.h"
 #include "taut/packets/ouster/Decoder.h"
 
 namespace taut
@@ -22,9 +23,11 @@ class PcapSource : public ImportSource
     PcapSource(const Recording& recording, const ImportOptions& options, WarningSink warn)
         : path_(recording.path.string()), reader_(path_), warn_(std::move(warn))
     {
-        addSensor(makeVelodyneDecoder(options.capture_clock));
+        const StampClock clock = options.capture_clock ? StampClock::Capture : StampClock::Sensor;
+        addSensor(makeVelodyneDecoder(clock));
         if (const auto info = findDescription(recording.path, options))
-            addSensor(makeOusterDecoder(*info, options.capture_clock));
+            addSensor(makeOusterDecoder(*info, clock));
+        addSensor(makeHesaiDecoder(path_, options.hesai_csv, clock));
     }
 
     std::optional<ImportedItem> next() override
@@ -103,6 +106,10 @@ class PcapSource : public ImportSource
             sensor.decoder->add(datagram, items_);
             sensor.from = datagram.from;
             sensor.decoded++;
+        }
+        catch (const hesai::CorrectionError&)
+        {
+            throw;
         }
         catch (const ouster::DescriptionError& e)
         {

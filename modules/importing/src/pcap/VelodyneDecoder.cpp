@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
+#include <stdexcept>
 
+#include "SweepStamps.h"
 #include "VelodyneSweeps.h"
-#include "taut/importing/pcap/PacketDecoder.h"
+#include "taut/packets/velodyne/FrameAssembler.h"
 
 namespace taut
 {
@@ -20,25 +21,46 @@ Time inHourClosestTo(Time near, std::uint32_t microseconds)
     return near - t > kHour / 2 ? t + kHour : t;
 }
 
-std::string nameOf(const velodyne::PacketInfo& info)
+std::string nameOf(velodyne::Model model)
 {
-    const std::string model = info.model == velodyne::Model::Vlp16 ? "VLP-16" : "HDL-32E";
-    switch (info.mode)
+    switch (model)
+    {
+        case velodyne::Model::Hdl32:
+            return "HDL-32E";
+        case velodyne::Model::Vlp16:
+            return "VLP-16";
+        case velodyne::Model::Vlp32:
+            return "VLP-32C";
+        case velodyne::Model::Vls128:
+            break;
+    }
+    return "VLS-128";
+}
+
+std::string nameOf(velodyne::ReturnMode mode)
+{
+    switch (mode)
     {
         case velodyne::ReturnMode::Strongest:
-            return model + ", strongest return";
+            return "strongest return";
         case velodyne::ReturnMode::Last:
-            return model + ", last return";
+            return "last return";
         case velodyne::ReturnMode::Dual:
             break;
     }
-    return model + ", dual return";
+    return "dual return";
+}
+
+/** Models whose packets other readers of rawlogs do not know become points. */
+bool isKeptAsPackets(velodyne::Model model)
+{
+    return model == velodyne::Model::Vlp16 || model == velodyne::Model::Hdl32;
 }
 
 class VelodyneDecoder : public PacketDecoder
 {
  public:
-    explicit VelodyneDecoder(bool capture_clock) : capture_clock_(capture_clock) {}
+    explicit VelodyneDecoder(StampClock clock) : stamps_(clock) {}
 
     std::string make() const override { return "Velodyne"; }
 
@@ -52,24 +74,31 @@ class VelodyneDecoder : public PacketDecoder
     {
         velodyne::Packet packet;
         std::copy(datagram.payload.begin(), datagram.payload.end(), packet.begin());
-        auto sweep = sweeps_.add(packet, datagram.captured);
-        if (sweep) items.emplace_back(stamped(std::move(*sweep)));
-        if (packets_++ > 0) return;
-        info_ = velodyne::packetInfo(packet.data());
-        first_ = inHourClosestTo(datagram.captured, info_.microseconds);
-        clock_ahead_ = first_ - datagram.captured;
+        const auto info = velodyne::packetInfo(packet.data());
+        if (packets_ == 0)
+            begin(info, datagram.captured);
+        else if (info.model != info_.model)
+            throw std::runtime_error("a packet is of another model of Velodyne");
+        if (frames_)
+            addPoints(packet, datagram.captured, items);
+        else if (auto sweep = sweeps_.add(packet, datagram.captured))
+            items.emplace_back(stamped(std::move(*sweep)));
+        packets_++;
     }
 
     void finish(ImportedItems& items, const WarningSink&) override
     {
         if (auto sweep = sweeps_.finish()) items.emplace_back(stamped(std::move(*sweep)));
+        if (frames_) frames_->finish(complete_);
+        giveComplete(items);
     }
 
     std::vector<std::string> findings() const override
     {
         if (packets_ == 0) return {};
         std::vector<std::string> lines{
-            "Velodyne " + nameOf(info_) + ": " + std::to_string(packets_) + " packets"};
+            "Velodyne " + nameOf(info_.model) + ", " + nameOf(info_.mode) + ": " +
+            std::to_string(packets_) + " packets"};
         if (sweeps_.missing() > 0)
             lines.push_back(
                 std::to_string(sweeps_.missing()) +
@@ -77,7 +106,7 @@ class VelodyneDecoder : public PacketDecoder
         char text[160];
         std::snprintf(
             text, sizeof text,
-            capture_clock_
+            stamps_.byCapture()
                 ? "stamps: when the capture says; the sensor's clock is %.3f s ahead (modulo 1 h)"
                 : "stamps: the sensor's time past the hour, in the hour of the capture, whose "
                   "clock it is %.3f s ahead of",
@@ -87,14 +116,46 @@ class VelodyneDecoder : public PacketDecoder
     }
 
  private:
+    void begin(const velodyne::PacketInfo& info, Time captured)
+    {
+        info_ = info;
+        first_ = inHourClosestTo(captured, info.microseconds);
+        clock_ahead_ = first_ - captured;
+        stamps_.decide(first_, captured);
+        frames_.reset();
+        if (!isKeptAsPackets(info.model))
+            frames_.emplace(info.model, velodyne::defaultCalibration(info.model));
+    }
+
+    void addPoints(const velodyne::Packet& packet, Time captured, ImportedItems& items)
+    {
+        frames_->add(packet.data(), complete_);
+        giveComplete(items);
+        stamps_.note(first_ + frames_->packetEnd(), captured);
+    }
+
+    void giveComplete(ImportedItems& items)
+    {
+        for (Scan& scan : complete_)
+        {
+            scan.stamp += first_;
+            scan.end += first_;
+            stamps_.apply(scan);
+            items.emplace_back(std::move(scan));
+        }
+        complete_.clear();
+    }
+
     PacketScan stamped(VelodyneSweep sweep) const
     {
-        sweep.scan.stamp = capture_clock_ ? sweep.captured : first_ + sweep.scan.stamp;
+        sweep.scan.stamp = stamps_.byCapture() ? sweep.captured : first_ + sweep.scan.stamp;
         return std::move(sweep.scan);
     }
 
-    bool capture_clock_;
+    SweepStamps stamps_;
     VelodyneSweeps sweeps_;
+    std::optional<velodyne::FrameAssembler> frames_;  // of a model that becomes points
+    std::vector<Scan> complete_;
     std::size_t packets_ = 0;
     velodyne::PacketInfo info_;
     Time first_ = 0;  // of the first packet, by the sensor
@@ -102,8 +163,8 @@ class VelodyneDecoder : public PacketDecoder
 };
 }  // namespace
 
-std::unique_ptr<PacketDecoder> makeVelodyneDecoder(bool capture_clock)
+std::unique_ptr<PacketDecoder> makeVelodyneDecoder(StampClock clock)
 {
-    return std::make_unique<VelodyneDecoder>(capture_clock);
+    return std::make_unique<VelodyneDecoder>(clock);
 }
 }  // namespace taut

@@ -11,13 +11,6 @@ constexpr int kWrap = 3000;                      // [0.01 deg] more than packets
 constexpr Duration kLongestSweep = 250'000'000;  // 5 Hz is the slowest turn
 constexpr std::size_t kMostPackets = 2000;       // whatever the clock says
 
-Duration packetDuration(const velodyne::PacketInfo& info)
-{
-    const int firings =
-        info.mode == velodyne::ReturnMode::Dual ? velodyne::kBlocks / 2 : velodyne::kBlocks;
-    return std::llround(firings * velodyne::firingPattern(info.model).blockPeriod());
-}
-
 void checkDecodes(const velodyne::Packet& packet, velodyne::Model model)
 {
     std::vector<velodyne::Return> returns;
@@ -29,7 +22,7 @@ std::optional<VelodyneSweep> VelodyneSweeps::add(const velodyne::Packet& packet,
 {
     const auto info = velodyne::packetInfo(packet.data());
     checkDecodes(packet, info.model);
-    const Duration duration = packetDuration(info);
+    const Duration duration = velodyne::packetDuration(info);
     const Duration t = clock_.sinceFirst(info.microseconds);
     const int azimuth = velodyne::blockAzimuth(packet.data(), 0);
     auto& packets = sweep_.scan.packets;

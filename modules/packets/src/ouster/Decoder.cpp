@@ -18,10 +18,10 @@ constexpr Duration kLongestFrame = 2'000'000'000;  // offsets fit 32 bits
 constexpr double kPaceTolerance = 0.25;
 constexpr int kWrongPaces = 32;  // in a row: a clock that is set once is no other lidar mode
 
-std::uint64_t serialOf(const std::uint8_t* packet)
+std::uint64_t serialOf(const std::uint8_t* packet, const PacketLayout& layout)
 {
-    return readLittle<std::uint32_t>(packet + kSerialAt) |
-           static_cast<std::uint64_t>(packet[kSerialAt + 4]) << 32;
+    return readLittle<std::uint32_t>(packet + layout.serial_at) |
+           static_cast<std::uint64_t>(packet[layout.serial_at + 4]) << 32;
 }
 
 bool isValid(const std::uint8_t* column, const PacketLayout& layout, std::size_t column_bytes)
@@ -69,10 +69,11 @@ void FrameAssembler::check(const std::uint8_t* packet, std::size_t bytes) const
         throw DescriptionError(
             "a lidar packet has " + std::to_string(bytes) + " bytes where the description says " +
             std::to_string(lidarPacketBytes(info_)) + ": it is of another sensor or setting");
-    if (info_.profile != Profile::Legacy && info_.serial != 0 && serialOf(packet) != info_.serial)
+    if (info_.profile == Profile::Legacy || info_.serial == 0) return;
+    if (const auto serial = serialOf(packet, layoutOf(info_.profile)); serial != info_.serial)
         throw DescriptionError(
-            "a packet is of the sensor " + std::to_string(serialOf(packet)) +
-            ", the description of " + std::to_string(info_.serial));
+            "a packet is of the sensor " + std::to_string(serial) + ", the description of " +
+            std::to_string(info_.serial));
 }
 
 std::optional<Frame> FrameAssembler::add(const std::uint8_t* packet, std::size_t bytes)
@@ -81,8 +82,7 @@ std::optional<Frame> FrameAssembler::add(const std::uint8_t* packet, std::size_t
     packet_time_.reset();
     const PacketLayout layout = layoutOf(info_.profile);
     const std::size_t column_bytes = layout.columnBytes(info_.pixels_per_column);
-    const int id = readLittle<std::uint16_t>(
-        info_.profile == Profile::Legacy ? packet + kLegacyFrameAt : packet + kFrameAt);
+    const int id = readLittle<std::uint16_t>(packet + layout.frame_at);
     std::optional<Frame> complete;
     if (started_ && id != frame_.id)
     {

@@ -87,7 +87,9 @@ Profile readProfile(const Description& description)
         {"LEGACY", Profile::Legacy},
         {"RNG19_RFL8_SIG16_NIR16", Profile::Rng19Rfl8Sig16Nir16},
         {"RNG19_RFL8_SIG16_NIR16_DUAL", Profile::Rng19Rfl8Sig16Nir16Dual},
-        {"RNG15_RFL8_NIR8", Profile::Rng15Rfl8Nir8}};
+        {"RNG15_RFL8_NIR8", Profile::Rng15Rfl8Nir8},
+        {"RNG15_RFL8_NIR8_DUAL", Profile::Rng15Rfl8Nir8Dual},
+        {"FUSA_RNG15_RFL8_NIR8_DUAL", Profile::FusaRng15Rfl8Nir8Dual}};
     const auto name = description.get<std::string>("udp_profile_lidar", "LEGACY");
     const auto it = known.find(name);
     if (it == known.end())

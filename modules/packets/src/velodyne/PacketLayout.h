@@ -10,6 +10,7 @@
 namespace taut::velodyne
 {
 inline constexpr std::uint16_t kBlockFlag = 0xeeff;
+inline constexpr std::uint16_t kBankFlags[] = {kBlockFlag, 0xddff, 0xccff, 0xbbff};
 inline constexpr std::size_t kReturnBytes = 3;       // range (2), intensity (1)
 inline constexpr std::size_t kBlockHeaderBytes = 4;  // flag (2), azimuth (2)
 inline constexpr std::size_t kBlockBytes = kBlockHeaderBytes + kReturnsPerBlock * kReturnBytes;

@@ -18,6 +18,7 @@ enum class ScanStamp
 struct ImportOptions
 {
     std::string ouster_json;     //!< description of the Ouster; empty: the capture's, with .json
+    std::string hesai_csv;       //!< correction file of the Hesai; empty: one beside the recording
     bool capture_clock = false;  //!< stamps by the capturing computer instead of the sensor
 
     /** Bags: regular expressions (ECMAScript) for the whole name of a topic. */

@@ -14,6 +14,14 @@ namespace taut
 {
 using ImportedItems = std::deque<ImportedItem>;
 
+/** Whose clock the stamps are of. */
+enum class StampClock
+{
+    Sensor,
+    Capture,       //!< of the computer that took the packets
+    SensorIfClose  //!< the sensor's if it is within half a second of the computer's
+};
+
 /** What one make of sensor sends, to what it measured. */
 class PacketDecoder
 {
@@ -28,7 +36,8 @@ class PacketDecoder
     /** True if the datagram looks like one of this make. */
     virtual bool recognises(const UdpDatagram& datagram) const = 0;
 
-    /** Throws std::runtime_error if the datagram cannot be used. */
+    /** Throws std::runtime_error if the datagram cannot be used; ouster::DescriptionError and
+     * hesai::CorrectionError if none can be. */
     virtual void add(const UdpDatagram& datagram, ImportedItems& items) = 0;
 
     /** What is left at the end. */
@@ -38,7 +47,11 @@ class PacketDecoder
     virtual std::vector<std::string> findings() const = 0;
 };
 
-std::unique_ptr<PacketDecoder> makeVelodyneDecoder(bool capture_clock);
-std::unique_ptr<PacketDecoder> makeOusterDecoder(
-    const ouster::SensorInfo& info, bool capture_clock);
+std::unique_ptr<PacketDecoder> makeVelodyneDecoder(StampClock clock);
+std::unique_ptr<PacketDecoder> makeOusterDecoder(const ouster::SensorInfo& info, StampClock clock);
+
+/** Angles of the lasers are those of the file `correction`; if that is empty, of one beside the
+ * recording; else the data sheet's. Both may be empty. */
+std::unique_ptr<PacketDecoder> makeHesaiDecoder(
+    const std::string& recording, const std::string& correction, StampClock clock);
 }  // namespace taut

@@ -18,6 +18,8 @@ enum class Profile : std::uint8_t
     Rng19Rfl8Sig16Nir16,
     Rng19Rfl8Sig16Nir16Dual,
     Rng15Rfl8Nir8,
+    Rng15Rfl8Nir8Dual,
+    FusaRng15Rfl8Nir8Dual,
 };
 
 struct SensorInfo

@@ -10,12 +10,16 @@
 /** \file Decoder.h
  * Velodyne data packets to points. Pure functions over bytes: neither MRPT nor files nor clocks.
  *
- * Sources: VLP-16 User Manual 63-9243 and HDL-32E User Manual 63-9113 (packet layout, firing times,
- * vertical angles). Both lasers and blocks are fired at fixed times after the packet's time stamp,
- * which is that of the first firing in the packet:
+ * Sources: VLP-16 User Manual 63-9243, HDL-32E User Manual 63-9113, VLP-32C User Manual 63-9325 and
+ * VLS-128 User Manual 63-9480 (packet layout, firing times, angles). Both lasers and blocks are
+ * fired at fixed times after the packet's time stamp, which is that of the first firing in the
+ * packet:
  *
  *   VLP-16   2.304 us a laser, 55.296 us a firing sequence of 16, two sequences a block
  *   HDL-32E  1.152 us a laser, 46.080 us a firing sequence of 32, one sequence a block
+ *   VLP-32C  2.304 us a pair of lasers, 55.296 us a firing sequence of 32, one sequence a block
+ *   VLS-128  2.665 us a group of 8 lasers and as long a pause after 8 groups, 53.3 us a firing
+ *            sequence of 128, which fills four blocks; the first group 8.7 us before the stamp
  *
  * In dual-return mode blocks come in pairs of the same firings: last return, then strongest (or
  * second strongest where the last is the strongest). */
@@ -24,13 +28,15 @@ namespace taut::velodyne
 inline constexpr std::size_t kPacketBytes = 1206;  //!< the UDP payload of a data packet
 inline constexpr int kBlocks = 12;                 //!< in a packet
 inline constexpr int kReturnsPerBlock = 32;
-inline constexpr double kRangeUnit = 0.002;   //!< [m]
+inline constexpr double kRangeUnit = 0.002;   //!< of a VLP-16 and an HDL-32E [m]
 inline constexpr double kAzimuthUnit = 0.01;  //!< [deg]
 
 enum class Model : std::uint8_t
 {
     Hdl32 = 0x21,
     Vlp16 = 0x22,
+    Vlp32 = 0x28,   //!< VLP-32C
+    Vls128 = 0xa1,  //!< also sold as Alpha Prime
 };
 
 enum class ReturnMode : std::uint8_t
@@ -45,10 +51,19 @@ struct FiringPattern
 {
     int lasers;              //!< in a firing sequence; also the number of rings
     int sequences;           //!< firing sequences in a block
-    double laser_period;     //!< [ns]
+    double laser_period;     //!< from one laser, or group that fires at once, to the next [ns]
     double sequence_period;  //!< [ns], recharge included
+    int at_once = 1;         //!< lasers that fire together
+    int blocks = 1;          //!< that a firing sequence fills
+    int pause_after = 0;     //!< groups before a pause of one laser_period; 0: none
+    double first = 0;        //!< time of the first laser of all since the packet's stamp [ns]
+    double range_unit = kRangeUnit;  //!< [m]
 
+    /** From a block to the next one that other firings fill [ns]. */
     double blockPeriod() const { return sequences * sequence_period; }
+
+    /** Since the first laser of the firing sequence [ns]. */
+    double laserTime(int laser) const;
 };
 const FiringPattern& firingPattern(Model model);
 
@@ -74,6 +89,16 @@ struct PacketInfo
     ReturnMode mode = ReturnMode::Strongest;
 };
 
+/** Blocks of a packet that hold the same firings: the returns of dual mode, the banks of a VLS-128.
+ */
+int blocksPerFiring(const PacketInfo& info);
+
+/** Blocks that hold firings; a VLS-128 in dual mode leaves some empty. */
+int usedBlocks(const PacketInfo& info);
+
+/** Time that the firings of a packet take [ns]. */
+Duration packetDuration(const PacketInfo& info);
+
 /** Throws std::runtime_error if the model or the return mode is not one of those above. */
 PacketInfo packetInfo(const std::uint8_t* packet);
 
@@ -90,11 +115,13 @@ struct Return
 
 /** Appends the valid returns of a packet of kPacketBytes; gives its info. Slots with range 0 are no
  * returns; in dual mode a second return equal to the first is left out. Azimuths within a block
- * come from the median turning rate of the packet. Throws std::runtime_error on an unknown model or
- * mode, on a block with a flag other than 0xEEFF and on a calibration of another number of lasers.
- */
+ * come from the median turning rate of the packet (as do times after a sector that is left out), or
+ * from `turning_rate` [deg/ns] where a packet holds one firing sequence only (VLS-128, dual).
+ * Throws std::runtime_error on an unknown model or mode, on a block with a wrong flag (0xEEFF, or
+ * that of a bank) and on a calibration of another number of lasers. */
 PacketInfo decodePacket(
-    const std::uint8_t* packet, const Calibration& calibration, std::vector<Return>& returns);
+    const std::uint8_t* packet, const Calibration& calibration, std::vector<Return>& returns,
+    double turning_rate = 0);
 
 /** Azimuth of a block as it is in the packet [0.01 deg]. */
 std::uint16_t blockAzimuth(const std::uint8_t* packet, int block);
