@@ -60,6 +60,18 @@ class SessionTest : public ::testing::Test
 };
 }  // namespace
 
+TEST_F(SessionTest, TellsOfAnInputWhoseNameIsNotUtf8)
+{
+    config.input = "caf\xe9.rawlog";
+    Player player(imu, scans);
+    Session session(config, warnings);
+    const SessionOutcome outcome = session.run(player, [](double) { return true; });
+    EXPECT_EQ(outcome.failure, "");
+    EXPECT_FALSE(outcome.report_failed);
+    EXPECT_EQ(metrics()["input"]["file"], "caf\xef\xbf\xbd.rawlog");
+    EXPECT_GT(std::filesystem::file_size(folder / "run/report.html"), 900'000u);
+}
+
 TEST_F(SessionTest, LeavesResultsOfAStream)
 {
     Player player(imu, scans);

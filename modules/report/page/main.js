@@ -94,7 +94,8 @@ function recolor(view, plots, timeline, data) {
   if (view) {
     view.recolor();
     if (view.points) updateLegend(data, view);
-    view.draw();
+    if (document.documentElement.dataset.print) view.drawAll();
+    else view.invalidate();
   }
   plots.draw();
   timeline.drawStrip();
@@ -133,6 +134,7 @@ function start() {
   window.addEventListener('beforeprint', print(true));
   window.addEventListener('afterprint', print(false));
   refresh();
+  if (view) view.draw();
   // For tests, and for whoever wants to drive the page from the console.
   window.tautReport = {data, path, view, plots, timeline, milliseconds: performance.now()};
 }

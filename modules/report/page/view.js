@@ -1,7 +1,8 @@
 // The 3D view: camera, controls, and drawing when something changed.
 
-const kSlowFrame = 60;  // [ms] while the camera moves: then fewer points are drawn
-const kFewestPoints = 60000;
+const kFluent = 35, kBearable = 1200;  // [ms] of a picture: while something moves, and after that
+const kSettled = 250;                   // [ms] without a new picture: nothing moves any more
+const kFewestPoints = 50000;
 
 class View {
   constructor(data, path) {
@@ -18,9 +19,7 @@ class View {
     this.controls.screenSpacePanning = true;
     this.controls.enableKeys = false;  // the arrows belong to the slider
     this.controls.addEventListener('change', () => this.invalidate());
-    this.controls.addEventListener('start', () => { this.moving = true; });
-    this.controls.addEventListener('end', () => { this.moving = false; this.budget = Infinity; this.invalidate(); });
-    this.budget = Infinity;
+    this.budget = 2 * kFewestPoints;  // until it is known how fast this machine is
     this.follow = false;
     new ResizeObserver(() => { if (this.resize()) this.draw(); }).observe(this.canvas.parentElement);
     this.resize();
@@ -204,22 +203,39 @@ class View {
     this.waiting = requestAnimationFrame(() => { this.waiting = 0; this.draw(); });
   }
 
+  /** Draws as many points as can be drawn fluently, and more when nothing has moved for a while: the
+   * first ones are an even sample of all. */
   draw() {
-    const far = this.camera.position.distanceTo(this.body.position);
-    this.body.scale.setScalar(Math.max(0.01, 0.022 * far));
-    const begin = performance.now();
-    if (this.points) this.points.geometry.setDrawRange(0, Math.min(this.data.points.count, this.budget));
-    this.renderer.render(this.scene, this.camera);
-    this.adapt(performance.now(), begin);
+    this.render(this.budget);
+    clearTimeout(this.settling);
+    if (this.drawn < this.data.points.count)
+      this.settling = setTimeout(() => this.render(this.affordable), kSettled);
   }
 
-  /** Where frames are slow while the camera moves, fewer points are drawn: the first ones of the
-   * file are an even sample of all. */
-  adapt(now, begin) {
-    const since = this.last ? now - this.last : 0;
-    this.last = now;
-    const slow = now - begin > kSlowFrame || (since > kSlowFrame && since < 1000);
-    if (this.moving && slow)
-      this.budget = Math.max(kFewestPoints, Math.min(this.budget, this.data.points.count) / 2);
+  drawAll() { this.render(Infinity); }
+
+  render(most) {
+    const far = this.camera.position.distanceTo(this.body.position);
+    this.body.scale.setScalar(Math.max(0.01, 0.022 * far));
+    this.drawn = Math.min(this.data.points.count, most);
+    if (this.points) this.points.geometry.setDrawRange(0, this.drawn);
+    const begin = performance.now();
+    this.renderer.render(this.scene, this.camera);
+    this.waitForPicture();
+    this.learn(performance.now() - begin);
+  }
+
+  /** Returns when the graphics card is done. */
+  waitForPicture() {
+    const gl = this.renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+
+  /** From the time that a picture took: how many points make a fluent one, and a bearable one. */
+  learn(milliseconds) {
+    const fitting = limit =>
+      Math.max(kFewestPoints, Math.floor(this.drawn * limit / Math.max(milliseconds, 1)));
+    this.budget = fitting(kFluent);
+    this.affordable = fitting(kBearable);
   }
 }
