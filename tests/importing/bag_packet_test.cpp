@@ -239,6 +239,39 @@ TEST_F(APacketBagOf, DamageLosesThePacketsThatAreDamaged)
     EXPECT_EQ(all.scans[1].points.size(), 147U * 8 * 32);
 }
 
+TEST_F(APacketBagOf, RandomBytesNeverCrash)
+{
+    Random random(5);
+    auto hesai = hesaiPayloads(), velodyne = velodynePayloads();
+    hesai.resize(40);
+    velodyne.resize(40);
+    int read = 0;
+    for (int i = 0; i < 200; i++)
+    {
+        const PacketMessages messages{
+            i % 2 == 0 ? "nebula_msgs/NebulaPackets" : "pandar_msgs/PandarScan"};
+        auto damaged = messages.of(i % 3 == 0 ? velodyne : hesai, 5);
+        for (TestMessage& message : damaged)
+            for (int k = 0; k < 5; k++)
+            {
+                const auto size = static_cast<double>(message.data.size());
+                const auto at = static_cast<std::size_t>(random.uniform(0, size - 1));
+                message.data[at] = static_cast<std::uint8_t>(random.uniform(0, 256));
+            }
+        try
+        {
+            for (const Scan& scan : import(write(damaged)).scans)
+                for (const LidarPoint& point : scan.points)
+                    ASSERT_TRUE(point.position.allFinite() && point.offset >= 0);
+            read++;
+        }
+        catch (const std::runtime_error&)  // no usable packet left
+        {
+        }
+    }
+    EXPECT_GT(read, 50);
+}
+
 TEST_F(APacketBagOf, AnUnknownSensorFails)
 {
     auto payloads = hesaiPayloads();

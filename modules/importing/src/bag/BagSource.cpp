@@ -48,8 +48,10 @@ BagTopic chooseLidar(
         packets.push_back(topic);
         types.push_back(topic.type);
     }
-    const bool by_packets = !hasMessages(matching(topics, kSweepTypes, expression, option)) &&
-                            hasMessages(matching(packets, types, expression, option));
+    const auto clouds = matching(topics, kSweepTypes, expression, option);
+    const auto of_packets = matching(packets, types, expression, option);
+    const bool by_packets = !hasMessages(clouds) &&
+                            (hasMessages(of_packets) || (clouds.empty() && !of_packets.empty()));
     const auto lidar = by_packets ? chooseTopic(packets, types, expression, option)
                                   : chooseTopic(topics, kSweepTypes, expression, option);
     if (!lidar)
