@@ -46,6 +46,19 @@ const std::string& firstGiven(const std::string& a, const std::string& b)
 }
 }  // namespace
 
+bool isRawlog(const std::string& path)
+{
+    try
+    {
+        const ObservationReader reader(path);
+        return true;
+    }
+    catch (const std::runtime_error&)
+    {
+        return false;
+    }
+}
+
 struct RawlogSource::Impl
 {
     Impl(const RawlogConfig& c, WarningSink w)

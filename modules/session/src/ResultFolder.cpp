@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "taut/files/sameFile.h"
+
 namespace fs = std::filesystem;
 
 namespace taut
@@ -44,15 +46,11 @@ bool isSubmapFile(const fs::path& path)
 
 void refuseInputs(const fs::path& folder, const std::vector<std::string>& inputs)
 {
-    for (const std::string& input : inputs)
-    {
-        if (input.empty() || !fs::exists(input)) continue;
-        for (const char* name : kResults)
-            if (fs::exists(folder / name) && fs::equivalent(input, folder / name))
-                throw FolderInUse(
-                    "the results would overwrite '" + input +
-                    "', which is read: choose another folder");
-    }
+    for (const char* name : kResults)
+        if (const auto input = sameFile((folder / name).string(), inputs))
+            throw FolderInUse(
+                "the results would overwrite '" + *input +
+                "', which is read: choose another folder");
 }
 
 /** Whether taut's results are in the folder. Before there was a marker, metrics.json told. */

@@ -24,6 +24,9 @@ struct RawlogConfig
     Rig rig;               //!< what overrides the poses, units and clocks of the log
 };
 
+/** Whether a file begins with an object of a rawlog, gz or plain. */
+bool isRawlog(const std::string& path);
+
 /** Streams the measurements of one LiDAR and one IMU out of a rawlog (observation or sensory-frame
  * format, gz or plain), in the order of the file, with memory bounded by about 2 s of it.
  *
