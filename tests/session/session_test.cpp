@@ -107,6 +107,37 @@ TEST_F(SessionTest, SavesWhatWasDoneBeforeAStreamFailed)
     EXPECT_EQ(metrics()["result"]["poses"], outcome.poses);
 }
 
+TEST_F(SessionTest, AFileThatTheDiskDoesNotTakeKeepsNoneOfTheOthers)
+{
+    if (!std::ofstream("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+    for (const char* file : {"map.ot", "loops.csv"})
+        std::filesystem::create_symlink("/dev/full", config.folder + "/" + file);
+    Player player(imu, scans);
+    const SessionOutcome outcome =
+        Session(config, warnings).run(player, [](double) { return true; });
+    EXPECT_EQ(
+        outcome.failure, "cannot write '" + config.folder + "/map.ot': No space left on device");
+    EXPECT_EQ(outcome.poses, static_cast<int>(scans.size()));
+    EXPECT_EQ(linesOf("trajectory.tum"), scans.size() + 1);
+    EXPECT_EQ(metrics()["result"]["poses"], scans.size());
+    EXPECT_FALSE(std::filesystem::exists(folder / "run/.taut-reserve"));
+}
+
+TEST_F(SessionTest, ALaterErrorDoesNotHideTheFirst)
+{
+    if (!std::ofstream("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+    for (const char* file : {"map.ot", "states.csv"})
+        std::filesystem::create_symlink("/dev/full", config.folder + "/" + file);
+    Player player(imu, scans);
+    const SessionOutcome outcome =
+        Session(config, warnings).run(player, [](double) { return true; });
+    EXPECT_EQ(
+        outcome.failure,
+        "cannot write '" + config.folder + "/states.csv': No space left on device");
+    EXPECT_GE(warnings.count("not_saved"), 1u);
+    EXPECT_GE(metrics()["warnings"]["not_saved"], 1);
+}
+
 TEST_F(SessionTest, AnInterruptedOneIsPartial)
 {
     Player player(imu, scans);

@@ -51,6 +51,7 @@ void MapExport::add(const NavState& state, const std::vector<Vector3d>& points_w
         spacing_ *= 2;
     }
     for (const Vector3d& p : points_world) addPoint(p);
+    ply_.flush();
     if (points_world.empty() || !isKey(state)) return;
     last_key_ = state;
     key_scans_++;

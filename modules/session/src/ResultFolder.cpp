@@ -28,6 +28,7 @@ constexpr const char* kResults[] = {
     "metrics.json",
     "config.yaml",
     "rig.yaml",
+    ".taut-reserve",
     "snapshot_top.png",
     "snapshot_oblique.png",
     "snapshot_follow.png"};

@@ -6,6 +6,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "taut/core/writeError.h"
+
 namespace taut
 {
 namespace
@@ -44,10 +46,12 @@ std::string formatNumber(double value, int decimals)
     return {buffer.data(), result.ptr};
 }
 
-/** Calls `body` with the words of every line that holds data; names file and line in its errors. */
+/** Calls `body` with the words of every line that holds data; names file and line in its errors.
+ * A last line that fails and has no end goes to `cut`, if that is there: its writer was killed. */
 void forLines(
     const std::string& path, std::size_t columns,
-    const std::function<void(const std::vector<std::string>&)>& body)
+    const std::function<void(const std::vector<std::string>&)>& body,
+    const std::function<void(const std::string&)>& cut = {})
 {
     std::ifstream file(path);
     if (!file) throw std::runtime_error("cannot read '" + path + "'");
@@ -66,7 +70,9 @@ void forLines(
         }
         catch (const std::invalid_argument& e)
         {
-            throw std::runtime_error(path + ":" + std::to_string(number) + ": " + e.what());
+            const std::string error = path + ":" + std::to_string(number) + ": " + e.what();
+            if (!file.eof() || !cut) throw std::runtime_error(error);
+            cut(error);
         }
     }
     if (file.bad()) throw std::runtime_error("error while reading '" + path + "'");
@@ -116,13 +122,20 @@ Trajectory readTum(const std::string& path, const WarningSink& warn)
                 warn(
                     {t, "repeated_stamp",
                      path + ": a second pose at " + formatSeconds(t) + " s is dropped"});
+        },
+        [&](const std::string& error)
+        {
+            if (warn)
+                warn(
+                    {out.empty() ? 0 : out.back().t, "cut_line",
+                     error + "; the line has no end and is left out: the writing was cut off"});
         });
     return out;
 }
 
 TumWriter::TumWriter(const std::string& path) : path_(path), file_(path)
 {
-    if (!file_) throw std::runtime_error("cannot write '" + path + "'");
+    if (!file_) throw writeError(path);
     file_ << "# timestamp tx ty tz qx qy qz qw\n";
 }
 
@@ -135,12 +148,13 @@ void TumWriter::write(const StampedPose& pose)
     any_ = true;
     last_ = pose.t;
     file_ << tumLine(pose) << '\n';
+    flushOrThrow(file_, path_);
 }
 
 void TumWriter::close()
 {
+    flushOrThrow(file_, path_);
     file_.close();
-    if (!file_) throw std::runtime_error("cannot write '" + path_ + "' to its end");
 }
 
 void writeTum(const std::string& path, const Trajectory& trajectory)
