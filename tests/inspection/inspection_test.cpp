@@ -136,7 +136,7 @@ TEST_F(Doctor, FindsStampsThatRepeatOrGoBackward)
     EXPECT_THAT(
         kindsOf(found),
         UnorderedElementsAre(
-            "imu_duplicate", "imu_time", "scan_duplicate", "scan_time", "lidar_gap"));
+            "imu_duplicate", "imu_order", "scan_duplicate", "scan_time", "lidar_gap"));
     for (const Finding& f : found)
         if (f.kind == "imu_duplicate")
         {

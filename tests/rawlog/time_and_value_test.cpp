@@ -32,19 +32,39 @@ class TimeAndValue : public RawlogTest
     RawlogConfig config_;
 };
 
-TEST_F(TimeAndValue, ImuSamplesThatDoNotMoveForwardInTimeAreSkipped)
+TEST_F(TimeAndValue, ImuSamplesThatDoNotMoveForwardInTimeAreSkippedOrSorted)
 {
-    for (const int t : {0, 10, 20, 20, 15, 30}) log_.add(mrptImu(at(t)));
+    for (const int t : {0, 10, 20, 20, 15, 30, -2000, 40}) log_.add(mrptImu(at(t)));
     log_.add(mrptScan(at(0)));
     const auto content = read();
     std::vector<Time> times;
     for (const auto& sample : content.imu) times.push_back(sample.t);
-    EXPECT_EQ(times, (std::vector<Time>{at(0), at(10), at(20), at(30)}));
-    ASSERT_EQ(content.warnings.count("imu_duplicate"), 1u);
-    ASSERT_EQ(content.warnings.count("imu_time"), 1u);
-    EXPECT_THAT(content.warnings.kept()[0].text, HasSubstr("same stamp"));
-    EXPECT_THAT(content.warnings.kept()[1].text, HasSubstr("backward by 0.005000 s"));
-    EXPECT_EQ(content.warnings.kept()[1].t, at(15));
+    EXPECT_EQ(times, (std::vector<Time>{at(0), at(10), at(15), at(20), at(30), at(40)}));
+    ASSERT_EQ(content.warnings.kept().size(), 3u);
+    EXPECT_EQ(content.warnings.kept()[0].kind, "imu_order");
+    EXPECT_THAT(content.warnings.kept()[0].text, HasSubstr("0.005000 s late"));
+    EXPECT_EQ(content.warnings.kept()[1].kind, "imu_duplicate");
+    EXPECT_THAT(content.warnings.kept()[1].text, HasSubstr("same stamp"));
+    EXPECT_EQ(content.warnings.kept()[2].kind, "imu_time");
+    EXPECT_THAT(content.warnings.kept()[2].text, HasSubstr("backward by 2.030000 s"));
+    EXPECT_EQ(content.progress.skipped, 2u);
+}
+
+TEST_F(TimeAndValue, OneStampInTheFutureIsSkippedAlone)
+{
+    for (int k = 0; k < 30; k++)
+    {
+        for (int i = 0; i < 10; i++)
+            log_.add(mrptImu(at(100 * k + 10 * i + (k == 0 && i == 0 ? 3'600'000 : 0))));
+        log_.add(mrptScan(at(100 * k + (k == 14 ? 3'600'000 : 0))));
+    }
+    const auto content = read();
+    EXPECT_EQ(content.imu.size(), 299u);
+    EXPECT_EQ(content.scans.size(), 29u);
+    EXPECT_EQ(content.warnings.count("stamp_outlier"), 2u);
+    EXPECT_THAT(content.warnings.kept()[0].text, HasSubstr("of an IMU sample is 3599.990000 s"));
+    EXPECT_EQ(content.progress.first, at(10));
+    EXPECT_EQ(content.progress.now, at(2990));
     EXPECT_EQ(content.progress.skipped, 2u);
 }
 

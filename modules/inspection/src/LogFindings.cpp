@@ -13,6 +13,12 @@ std::string adviceFor(const std::string& kind)
         {"rawlog_truncated",
          "copy the file again or record again; what is before the damage can be used"},
         {"no_stamp", "let the driver stamp its observations"},
+        {"stamp_outlier", "let the driver check its stamps; what carries one is left out"},
+        {"imu_order",
+         "packets came in the wrong order: the samples are sorted; if it happens often, let the "
+         "recorder write in the order of time"},
+        {"clock_back",
+         "keep NTP from stepping the clock while recording; later stamps are moved by as much"},
         {"imu_time",
          "a clock was set back while recording, or packets came in the wrong order: keep NTP from "
          "stepping the clock; the samples are skipped"},
@@ -33,7 +39,7 @@ std::string adviceFor(const std::string& kind)
         {"scan_invalid", "see the text; the scans are skipped"},
         {"scan_empty", "is the sensor covered, or still starting? the scans are skipped"},
         {"rig_unused", "correct the label in the rig file"},
-        {"no_imu", "correct the label"}};
+        {"imu_not_found", "correct the label"}};
     const auto it = advice.find(kind);
     return it == advice.end() ? "" : it->second;
 }

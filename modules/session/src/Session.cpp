@@ -34,9 +34,9 @@ double secondsSince(std::chrono::steady_clock::time_point begin)
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/** Warnings which say that a part of the input was not used. */
-constexpr const char* kUnused[] = {
-    "late_imu", "imu_late", "imu_silent", "lidar_ended", "place_unknown"};
+/** Warnings which say that a part of the input was not used, or not as it is. */
+constexpr const char* kUnused[] = {"late_imu",    "imu_late",      "imu_silent", "imu_not_found",
+                                   "lidar_ended", "place_unknown", "clock_back"};
 }  // namespace
 
 Session::Session(const SessionConfig& config, WarningLog& warnings, EventSink events)

@@ -28,7 +28,7 @@ struct RawlogConfig
 bool isRawlog(const std::string& path);
 
 /** Streams the measurements of one LiDAR and one IMU out of a rawlog (observation or sensory-frame
- * format, gz or plain), in the order of the file, with memory bounded by about 2 s of it.
+ * format, gz or plain), in the order of the file, with memory bounded by about 3 s of it.
  *
  * The body is the IMU: T_imu_lidar = T_vehicle_imu^-1 T_vehicle_lidar from the sensors' poses in
  * the log (or the rig). Without an IMU the body is the vehicle.
@@ -39,6 +39,10 @@ bool isRawlog(const std::string& path);
  * Stamps of each sensor are strictly increasing in what is given out. What cannot be used is
  * skipped with a warning: rawlog_truncated   the file ends early or is damaged; see incomplete()
  *   no_stamp           observation without a valid stamp
+ *   stamp_outlier      stamp seconds away from those around it
+ *   imu_order          sample of the IMU up to a second late in the file (used, in its place)
+ *   clock_back         clock set back by more than half a second: later stamps are moved forward by
+ *                      as much (used; the same for both sensors if both clocks were)
  *   imu_time           stamp of the IMU earlier than the one before
  *   imu_duplicate      stamp of the IMU equal to the one before
  *   scan_time          stamp or end of a scan earlier than that of the one before
@@ -52,7 +56,7 @@ bool isRawlog(const std::string& path);
  *   scan_bad_points    more than 5 % of the points not finite or with an impossible time (used)
  *   scan_undistorted   all points carry the same time (used, Scan::already_undistorted)
  *   rig_unused         a part of the rig describes another sensor than the one in use
- *   no_imu             an IMU label was asked for and the log ended without one
+ *   imu_not_found      an IMU label was asked for and the log ended without one
  *
  * Scan::end is the time of the last point, the dropped ones included: they tell the end of the
  * sweep as well as the others. */
