@@ -31,6 +31,9 @@ std::string adviceFor(const std::string& kind)
         {"scan_duplicate",
          "the driver gives scans twice or stamps them too coarsely; the second of each is skipped"},
         {"imu_invalid", "let the driver give rates and specific forces in each sample"},
+        {"imu_outlier",
+         "bytes are lost or swapped between sensor and recorder, or the units are wrong; such "
+         "samples are left out"},
         {"imu_units", "look at the units and set the scales in the rig file"},
         {"imu_late", "start the IMU before the LiDAR, or cut the start off with --from-time"},
         {"scan_overlap",
@@ -87,7 +90,7 @@ Findings LogFindings::findings(const StreamProgress& progress, bool own_units) c
     if (progress.points_bad_time > 0)
         found.push_back(pointFinding(
             first_bad_time_, "point_times", progress.points_bad_time, progress.points,
-            "have a time 2 s or more away from their scan's",
+            "have a time that is not in their sweep",
             "the times of the points and the stamps come from different clocks, or are in "
             "different units"));
     return found;

@@ -18,6 +18,7 @@
 #include "ObservationReader.h"
 #include "ObservationToScan.h"
 #include "SensorChoice.h"
+#include "taut/core/format.h"
 #include "taut/rawlog/StampOrder.h"
 
 namespace taut
@@ -98,6 +99,7 @@ struct RawlogSource::Impl
     std::optional<Measurement> convert(const Judged& judged);
     std::optional<Measurement> convertImu(const CObservationIMU& observation, Duration shift);
     std::optional<Measurement> convertLidar(const CObservation& observation, Duration shift);
+    bool withinRange(const ImuSample& sample);
     bool checkImuTime(Time t);
     bool checkScanTime(const Scan& scan);
     void checkPoints(const ScanBuilder& points, Time t);
@@ -360,10 +362,25 @@ std::optional<Measurement> RawlogSource::Impl::convertImu(
         skip(sample.t, "imu_invalid", "an IMU sample has values that are not finite");
         return {};
     }
+    if (!withinRange(sample)) return {};
     if (!checkImuTime(sample.t) || sample.t - kLongestScan > end) return {};
     if (const auto doubt = unit_check.add(sample)) warn(sample.t, "imu_units", *doubt);
     progress.imu_samples++;
     return sample;
+}
+
+bool RawlogSource::Impl::withinRange(const ImuSample& sample)
+{
+    const double accel = sample.accel.norm(), rate = sample.gyro.norm();
+    const ImuRig& range = config.rig.imu;
+    if (accel <= range.max_accel && rate <= range.max_rate) return true;
+    skip(
+        sample.t, "imu_outlier",
+        format(
+            "an IMU sample says %.3g m/s^2 and %.3g rad/s, beyond its range (max_accel %.4g, "
+            "max_rate %.4g in the rig file)",
+            accel, rate, range.max_accel, range.max_rate));
+    return false;
 }
 
 bool RawlogSource::Impl::checkImuTime(Time t)
@@ -397,10 +414,13 @@ std::optional<Measurement> RawlogSource::Impl::convertLidar(
     try
     {
         ScanBuilder points = observationToPoints(observation, config.rig.lidar);
-        Scan scan = points.finish();
+        // A sweep ends before the next begins.
+        const auto interval = order.interval(StampOrder::Sensor::Lidar);
+        Scan scan = interval && *interval > 0 ? points.finish(*interval + kLargestOverlap)
+                                              : points.finish();
         progress.points += points.seen();
         progress.points_not_finite += points.notFinite();
-        progress.points_bad_time += points.badTime();
+        progress.points_bad_time += points.badTime() + points.outside();
         scan.stamp += clock_offset;
         scan.end += clock_offset;
         scan.sensor_label = observation.sensorLabel;
@@ -455,6 +475,11 @@ bool RawlogSource::Impl::checkScanTime(const Scan& scan)
 
 void RawlogSource::Impl::checkPoints(const ScanBuilder& points, Time t)
 {
+    if (points.outside() > 0)
+        warn(
+            t, "scan_point_times",
+            std::to_string(points.outside()) + " points of " + std::to_string(points.seen()) +
+                " have a time outside of their sweep; dropped");
     const std::size_t bad = points.notFinite() + points.badTime();
     if (static_cast<double>(bad) <= kWorstBadShare * static_cast<double>(points.seen())) return;
     warn(

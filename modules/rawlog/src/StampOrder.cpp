@@ -54,6 +54,15 @@ std::size_t StampOrder::push(Sensor sensor, Time t)
     return next_id_++;
 }
 
+std::optional<Duration> StampOrder::interval(Sensor sensor) const
+{
+    std::deque<Time> stamps = streams_[static_cast<std::size_t>(sensor)].history;
+    for (const Entry& entry : queue_)
+        if (entry.sensor == sensor && !entry.taken) stamps.push_back(entry.t);
+    if (stamps.size() <= kNeighbours) return {};
+    return intervalOf(stamps);
+}
+
 Duration StampOrder::elapsed() const
 {
     return std::max(streams_[0].elapsed, streams_[1].elapsed);

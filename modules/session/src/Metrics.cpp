@@ -93,6 +93,8 @@ std::string Metrics::json(const Summary& s, const WarningLog& warnings) const
         {"scans", s.log.scans},
         {"imu_samples", s.log.imu_samples},
         {"skipped_observations", s.log.skipped},
+        {"points_not_finite", s.log.points_not_finite},
+        {"points_with_wrong_time", s.log.points_bad_time},
         {"incomplete", s.incomplete},
         {"lidar_label", s.log.lidar_label},
         {"imu_label", s.log.imu_label}};

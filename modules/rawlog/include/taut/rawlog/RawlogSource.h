@@ -48,12 +48,15 @@ bool isRawlog(const std::string& path);
  *   scan_time          stamp or end of a scan earlier than that of the one before
  *   scan_duplicate     stamp or end of a scan equal to that of the one before
  *   imu_invalid        values that are missing or not finite
+ *   imu_outlier        values beyond ImuRig::max_accel or max_rate
  *   imu_units          values that contradict m/s^2 and rad/s (used as they are)
  *   imu_late           the IMU appeared later than 2 s into the log
  *   scan_overlap       a scan begins 20 ms or more before the end of the one before (used)
  *   scan_invalid       point vectors of different lengths, packets that cannot be decoded
  *   scan_empty         no valid point
  *   scan_bad_points    more than 5 % of the points not finite or with an impossible time (used)
+ *   scan_point_times   less than 1 % of the points have a time that no sweep of this LiDAR can
+ *                      reach, by the usual interval of its stamps: dropped (the others are used)
  *   scan_undistorted   all points carry the same time (used, Scan::already_undistorted)
  *   rig_unused         a part of the rig describes another sensor than the one in use
  *   imu_not_found      an IMU label was asked for and the log ended without one

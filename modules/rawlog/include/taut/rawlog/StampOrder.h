@@ -53,6 +53,9 @@ class StampOrder
      */
     std::optional<Judged> pop();
 
+    /** The usual interval of the stamps around the next one; nothing where there are too few. */
+    std::optional<Duration> interval(Sensor sensor) const;
+
     /** How much time went by in the stamps pushed, whatever some of them say. */
     Duration elapsed() const;
 
