@@ -275,7 +275,7 @@ TEST_F(Doctor, SurvivesValuesThatNoSensorGives)
         log_.write(path_);
         InspectionConfig config;
         config.window = 3;
-        EXPECT_THAT(kindsOf(inspect(config).findings), Contains("imu_units"));
+        EXPECT_THAT(kindsOf(inspect(config).findings), Contains("imu_outlier"));
     }
 }
 
