@@ -12,6 +12,7 @@
 #include "recording.h"
 #include "taut/core/Yaml.h"
 #include "taut/render/OSMesaRenderer.h"
+#include "taut/session/ResultFolder.h"
 #include "taut/trajectory/TrajectoryFile.h"
 #include "temporary_folder.h"
 
@@ -121,6 +122,27 @@ TEST_F(SessionTest, AFileThatTheDiskDoesNotTakeKeepsNoneOfTheOthers)
     EXPECT_EQ(linesOf("trajectory.tum"), scans.size() + 1);
     EXPECT_EQ(metrics()["result"]["poses"], scans.size());
     EXPECT_FALSE(std::filesystem::exists(folder / "run/.taut-reserve"));
+}
+
+TEST_F(SessionTest, NobodyElseWritesToItsFolder)
+{
+    {
+        Session session(config, warnings);
+        EXPECT_THROW(Session(config, warnings), std::runtime_error);
+        EXPECT_THROW(prepareResultFolder(config.folder, true, {}), FolderInUse);
+    }
+    Session after(config, warnings);
+}
+
+TEST_F(SessionTest, NamesThatAreNotUtf8AreInTheMetricsAllTheSame)
+{
+    config.input = folder / "h\xe4ll.rawlog";
+    config.method_file = "m\xfcthod.yaml";
+    Player player(imu, scans);
+    const SessionOutcome outcome =
+        Session(config, warnings).run(player, [](double) { return true; });
+    EXPECT_EQ(outcome.failure, "");
+    EXPECT_EQ(metrics()["method"]["file"], "m\uFFFDthod.yaml");
 }
 
 TEST_F(SessionTest, ALaterErrorDoesNotHideTheFirst)

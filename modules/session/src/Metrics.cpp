@@ -147,6 +147,7 @@ std::string Metrics::json(const Summary& s, const WarningLog& warnings) const
     for (const Warning& w : warnings.kept())
         j["first_warnings"].push_back(
             {{"t", static_cast<double>(w.t) * 1e-9}, {"kind", w.kind}, {"text", w.text}});
-    return j.dump(2) + "\n";
+    // Names of files may hold any bytes.
+    return j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 }  // namespace taut

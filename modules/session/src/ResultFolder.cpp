@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "DiskReserve.h"
 #include "taut/files/sameFile.h"
 
 namespace fs = std::filesystem;
@@ -86,6 +87,8 @@ void prepareResultFolder(
     if (fs::exists(folder) && !fs::is_directory(folder))
         throw std::runtime_error("'" + folder_name + "' is not a folder");
     refuseInputs(folder, inputs);
+    if (DiskReserve::isTaken(folder))
+        throw FolderInUse("another program writes its results to '" + folder_name + "' now");
     for (const char* name : kResults)
     {
         if (!isThere(folder / name)) continue;
