@@ -115,7 +115,7 @@ std::vector<Fault> all()
          [](Items& items) { putClocks(items, -kSecond); }, 3, "clock_back", 0.0015});
     faults.push_back(
         {"ClocksSetForwardByASecond", "the clocks of both sensors are set forward by a second",
-         [](Items& items) { putClocks(items, kSecond); }, 0, "gap", 0});
+         [](Items& items) { putClocks(items, kSecond); }, 0, "lidar_gap", 0});
     faults.push_back(
         {"AnImpossibleSample", "one IMU sample says 1e6 m/s^2",
          [](Items& items)
@@ -169,14 +169,12 @@ std::vector<Fault> all()
          [](Items& items) { std::get<Scan>(*find<Scan>(items, kMiddle)).points.clear(); }, 3,
          "scan_empty", 0.002});
     faults.push_back(
-        {"RepeatedScans", "every tenth scan comes twice",
+        {"ARepeatedScan", "one scan comes twice",
          [](Items& items)
          {
-             for (std::size_t i = 0; i < items.size(); i += 200)
-                 if (std::holds_alternative<Scan>(items[i]))
-                     items.insert(items.begin() + static_cast<std::ptrdiff_t>(i), items[i]);
              const auto scan = find<Scan>(items, kMiddle);
-             items.insert(scan, *scan);
+             const Measurement again = *scan;
+             items.insert(scan, again);
          },
          3, "scan_duplicate", 0.0015});
     faults.push_back(
@@ -200,8 +198,23 @@ std::vector<Fault> all()
         {"NoImu", "no IMU", [](Items& items) { remove<ImuSample>(items, 0, kEnd); }, 3, "no_imu",
          0.3});
     faults.push_back(
-        {"AnImuThatIsNotThere", "--imu names none that is in the log", [](Items&) {}, 3,
+        {"AnImuThatIsNotThere", "no IMU of the log has the label asked for", [](Items&) {}, 3,
          "imu_not_found", 0.3, "--imu NOPE"});
+    faults.push_back(
+        {"AScanWithALatePoint", "the last point of one scan is 1.8 s late",
+         [](Items& items)
+         { std::get<Scan>(*find<Scan>(items, kMiddle)).points.back().offset = 1'900'000'000; },
+         0, "scan_point_times", 0.0015});
+    faults.push_back(
+        {"TheClockOfTheLidarSetBack", "the clock of the LiDAR alone is set back by 5 s",
+         [](Items& items)
+         {
+             const Time from = timeOf(*find<Scan>(items, kMiddle));
+             for (Measurement& item : items)
+                 if (std::holds_alternative<Scan>(item) && timeOf(item) >= from)
+                     move(item, -5 * kSecond);
+         },
+         3, "clock_back", 0.003});
     faults.push_back(
         {"ALidarThatNeverMatches", "the LiDAR sees something else in each scan",
          [](Items& items)

@@ -8,6 +8,7 @@
 
 #include "../acceptance/slam_program.h"
 #include "faults.h"
+#include "taut/core/format.h"
 #include "taut/rawlog/RawlogSource.h"
 #include "taut/rawlog/RawlogWriter.h"
 #include "temporary_folder.h"
@@ -60,6 +61,28 @@ TEST_P(ARecordingWith, IsMadeTheMostOf)
     const double error = positionError(kSampleTruth, out + "/trajectory.tum");
     RecordProperty("error_mm", std::to_string(1000 * error));
     EXPECT_LT(error, fault.error) << run.output;
+}
+
+/** What the cases expect, in Markdown: docs/faults.md holds it. */
+std::string table()
+{
+    std::string text =
+        "| what goes wrong | exit code | said | position error, at most |\n|---|---|---|---|\n";
+    for (const Fault& f : recordedFaults())
+    {
+        const std::string arguments = f.arguments.empty() ? "" : " (`" + f.arguments + "`)";
+        text += "| " + f.what + arguments + " | " + std::to_string(f.exit_code) + " | " +
+                (f.says.empty() ? "" : "`" + f.says + "`") + " | " +
+                (f.error > 0 ? format("%g mm", 1000 * f.error) : "") + " |\n";
+    }
+    return text;
+}
+
+TEST(TheTableOfFaults, IsThatOfTheDocumentation)
+{
+    EXPECT_NE(contentOf(TAUT_DOCS "/faults.md").find(table()), std::string::npos)
+        << "docs/faults.md has to hold:\n"
+        << table();
 }
 
 INSTANTIATE_TEST_SUITE_P(
