@@ -261,6 +261,7 @@ bool parseCommandLine(TCLAP::CmdLine& cmd, int argc, char** argv, const Usage& u
 void guardStandardStreams()
 {
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     // open() gives the lowest descriptor that is free: those below it are open already.
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
         if (::fcntl(fd, F_GETFD) == -1 && ::open("/dev/null", O_RDWR) != fd)

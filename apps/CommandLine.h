@@ -32,7 +32,8 @@ bool parseCommandLine(TCLAP::CmdLine& cmd, int argc, char** argv, const Usage& u
 
 /** Makes the standard streams safe to write to: descriptors that are closed are opened to
  * /dev/null, else the first file that is opened would get what is meant for them. A reader who has
- * gone away makes writing fail instead of ending the program (SIGPIPE is ignored). */
+ * gone away and a file that reaches its limit make writing fail instead of ending the program
+ * (SIGPIPE and SIGXFSZ are ignored), so that what was done is saved. */
 void guardStandardStreams();
 
 /** Writes out what is left for the standard output. False if that, or anything before, could not be

@@ -40,6 +40,9 @@ class LogArguments
     {
         if (from_.getValue() < 0 || !(to_.getValue() > from_.getValue()))
             throw UsageError("--to-time must be later than --from-time, and neither negative");
+        constexpr double kLongest = 1e9;  // [s], 30 years: stamps reach no further
+        if (from_.getValue() > kLongest)
+            throw UsageError("--from-time is more than the 1e9 s that a log can take");
         return to_.getValue();
     }
 

@@ -8,10 +8,12 @@
 #include "../CommandLine.h"
 #include "../Progress.h"
 #include "../Signals.h"
+#include "../guardOutput.h"
 #include "Options.h"
 #include "SensorSummary.h"
 #include "taut/core/WarningLog.h"
 #include "taut/importing/openImportSource.h"
+#include "taut/rawlog/RawlogSource.h"
 #include "taut/rawlog/Rig.h"
 
 namespace taut
@@ -141,6 +143,8 @@ int run(int argc, char** argv)
 {
     Options options;
     if (!parseOptions(argc, argv, options)) return 0;
+    guardOutput(
+        options.output, {options.source, options.rig, options.import.ouster_json}, isRawlog);
     if (!options.overwrite && std::filesystem::exists(options.output))
         throw UsageError("'" + options.output + "' is there already; -w overwrites it");
     catchSignals();

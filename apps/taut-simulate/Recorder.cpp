@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "VelodynePackets.h"
@@ -18,6 +19,11 @@ std::string besides(const std::string& rawlog, const std::string& ending)
     const bool has_own = rawlog.size() > own.size() &&
                          rawlog.compare(rawlog.size() - own.size(), own.size(), own) == 0;
     return rawlog.substr(0, rawlog.size() - (has_own ? own.size() : 0)) + ending;
+}
+
+std::string part(const std::string& file)
+{
+    return file + ".part";
 }
 
 /** A reader drops points that are not finite: they have no truth. */
@@ -38,9 +44,17 @@ velodyne::Model modelOf(const LidarConfig& config)
 }
 }  // namespace
 
+RecordedFiles recordedFiles(const std::string& rawlog)
+{
+    return {
+        rawlog, besides(rawlog, ".gt.tum"), besides(rawlog, ".biases.csv"),
+        besides(rawlog, ".points")};
+}
+
 Recorder::Recorder(
     const RecorderConfig& config, const Scenario& scenario, const Simulator& simulator)
     : config_(config),
+      files_(recordedFiles(config.rawlog)),
       scenario_(scenario),
       simulator_(simulator),
       faults_(scenario.faults, static_cast<std::uint64_t>(scenario.seed)),
@@ -48,7 +62,7 @@ Recorder::Recorder(
       rawlog_(config.rawlog)
 {
     if (config.packets) modelOf(scenario.lidar);
-    if (config.points) point_truth_.emplace(besides(config.rawlog, ".points"));
+    if (config.points) point_truth_.emplace(part(files_.points));
 }
 
 void Recorder::add(int k, SimulatedScan simulated)
@@ -102,8 +116,8 @@ void Recorder::writeImuUntil(Time end)
 
 void Recorder::writeTruth() const
 {
-    TumWriter tum(besides(config_.rawlog, ".gt.tum"));
-    const std::string biases_path = besides(config_.rawlog, ".biases.csv");
+    TumWriter tum(part(files_.truth));
+    const std::string biases_path = part(files_.biases);
     std::ofstream biases(biases_path);
     biases << "t,bias_gyro_x,bias_gyro_y,bias_gyro_z,bias_accel_x,bias_accel_y,bias_accel_z\n";
     biases.precision(9);
@@ -130,6 +144,9 @@ void Recorder::close()
     writeImuUntil(std::numeric_limits<Time>::max());
     if (point_truth_) point_truth_->close();
     writeTruth();
+    for (const std::string& file : {files_.truth, files_.biases})
+        std::filesystem::rename(part(file), file);
+    if (point_truth_) std::filesystem::rename(part(files_.points), files_.points);
     rawlog_.close();
 }
 }  // namespace taut

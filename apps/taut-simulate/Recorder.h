@@ -19,9 +19,19 @@ struct RecorderConfig
     bool packets = false;  //!< the LiDAR as raw packets: VLP-16 and HDL-32E
 };
 
+/** The files of a recording. */
+struct RecordedFiles
+{
+    std::string rawlog, truth, biases, points;
+};
+
+/** OUT.rawlog, OUT.gt.tum, OUT.biases.csv, OUT.points. */
+RecordedFiles recordedFiles(const std::string& rawlog);
+
 /** Writes a simulation with its faults to files: OUT.rawlog, OUT.gt.tum (pose of the IMU in the
- * world at the true time of every sample), OUT.biases.csv, OUT.points. Throws std::runtime_error
- * naming the file that cannot be written. */
+ * world at the true time of every sample), OUT.biases.csv, OUT.points. They get their names when
+ * they are whole (close()), the rawlog last. Throws std::runtime_error naming the file that cannot
+ * be written. */
 class Recorder
 {
  public:
@@ -45,6 +55,7 @@ class Recorder
     void writeTruth() const;
 
     RecorderConfig config_;
+    RecordedFiles files_;
     simulation::Scenario scenario_;
     const simulation::Simulator& simulator_;
     simulation::Faults faults_;

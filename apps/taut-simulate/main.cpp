@@ -1,12 +1,15 @@
 /** taut-simulate: writes a rawlog with its truth from a scenario.
  * Exit codes: 0 done, 1 failed, 2 bad usage. */
+#include <fstream>
 #include <iostream>
 #include <optional>
 #include <thread>
 
 #include "../CommandLine.h"
 #include "../Progress.h"
+#include "../guardOutput.h"
 #include "Recorder.h"
+#include "taut/rawlog/RawlogSource.h"
 
 namespace
 {
@@ -27,7 +30,8 @@ std::optional<Options> parse(int argc, char** argv)
         "c", "config", "Scenario, as those in config/scenarios", true, "", "SCENARIO.yaml", cmd);
     TCLAP::ValueArg<std::string> output(
         "o", "output",
-        "Rawlog to write; beside it OUT.gt.tum (pose of the IMU in the world) and OUT.biases.csv",
+        "Rawlog to write; beside it OUT.gt.tum (pose of the IMU in the world) and OUT.biases.csv. "
+        "An older recording is replaced, nothing else is",
         true, "", "OUT.rawlog", cmd);
     TCLAP::ValueArg<int> seed("", "seed", "Of motion and noise", false, 0, "N", cmd);
     TCLAP::ValueArg<double> duration(
@@ -69,10 +73,33 @@ std::vector<taut::simulation::RecordedPose> readRecording(
     return recording;
 }
 
+bool beginsWith(const std::string& file, const std::string& text)
+{
+    std::string begin(text.size(), '\0');
+    std::ifstream(file, std::ios::binary)
+        .read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    return begin == text;
+}
+
+/** An older recording is replaced; nothing else is, and nothing that is read. */
+void guardOutputs(const Options& options, const taut::simulation::Scenario& scenario)
+{
+    const std::vector<std::string> inputs{
+        options.scenario, scenario.motion.replay.file, scenario.world.file};
+    const taut::RecordedFiles files = taut::recordedFiles(options.recorder.rawlog);
+    const auto begins = [](const std::string& text)
+    { return [text](const std::string& file) { return beginsWith(file, text); }; };
+    taut::guardOutput(files.rawlog, inputs, taut::isRawlog);
+    taut::guardOutput(files.truth, inputs, begins("# timestamp tx ty tz qx qy qz qw\n"));
+    taut::guardOutput(files.biases, inputs, begins("t,bias_gyro_x,"));
+    if (options.recorder.points) taut::guardOutput(files.points, inputs, begins("TAUTPNTS"));
+}
+
 void run(const Options& options)
 {
     auto section = taut::simulation::loadScenarioFile(options.scenario, options.settings);
     const taut::simulation::Scenario scenario = taut::simulation::readScenario(section);
+    guardOutputs(options, scenario);
     const taut::simulation::Simulator simulator(scenario, readRecording(scenario.motion));
     if (!options.quiet)
     {

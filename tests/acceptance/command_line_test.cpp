@@ -253,6 +253,28 @@ TEST(TheCommandLine, NamesAnUnknownKey)
     EXPECT_THAT(run.output, HasSubstr("voxel_size"));
 }
 
+TEST(TheCommandLine, GivesTwoForWhateverIsSetWrongly)
+{
+    const TemporaryFolder folder;
+    std::ofstream(folder / "nan.yaml") << "lidar: {pose: {x: .nan}}\n";
+    std::ofstream(folder / "empty.yaml") << "estimation:\n";
+    const std::string imported = TAUT_PROGRAMS "/taut-import " TAUT_BAGS "/rosbag_none.bag -o ";
+    for (const std::string wrong :
+         {"--from-time 1e10", "--to-time nan", "--lidar '['", "--imu '('", "-c TEMPORARY",
+          "-r TEMPORARY", "-r TEMPORARY/nan.yaml", "-c /none.yaml", "-r /none.yaml", "-p /none.so",
+          "-s features.voxel_size=nan", "-s estimation.max_iterations=1e99"})
+    {
+        std::string arguments = wrong;
+        if (const auto at = arguments.find("TEMPORARY"); at != std::string::npos)
+            arguments.replace(at, 9, folder / "");
+        const ProgramRun run = slam(kSample, folder / "out", arguments);
+        EXPECT_EQ(run.exit_code, 2) << wrong << ": " << run.output;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+    EXPECT_EQ(runProgram(imported + (folder / "x") + " --lidar-topic '['", "").exit_code, 2);
+    EXPECT_EQ(slam("--show-config -c " + (folder / "empty.yaml")).exit_code, 0);
+}
+
 TEST(TheCommandLine, SetsKeysAtAnyDepthAndOtherClasses)
 {
     const ProgramRun run = slam(

@@ -12,6 +12,7 @@
 #include "slam_program.h"
 #include "taut/core/TimeText.h"
 #include "taut/rawlog/RawlogSource.h"
+#include "taut/rawlog/RawlogWriter.h"
 #include "temporary_folder.h"
 
 namespace
@@ -135,11 +136,54 @@ TEST(AnImport, GivesTwoForBadUsageAndOverwritesOnlyWhenTold)
     EXPECT_EQ(import(in).exit_code, 2);
     EXPECT_EQ(import("--help").exit_code, 0);
     writeFolder(in, 0.5);
-    std::ofstream(log) << "mine";
+    RawlogWriter writer(log);
+    writer.write(ImuSample{});
+    writer.close();
+    const std::string before = contentOf(log);
     EXPECT_EQ(import(in + " -o " + log).exit_code, 2);
-    EXPECT_EQ(contentOf(log), "mine");
+    EXPECT_EQ(contentOf(log), before);
     EXPECT_EQ(import(in + " -w -o " + log).exit_code, 0);
     EXPECT_GT(contentOf(log).size(), 10000U);
+}
+
+TEST(AnImport, NeverDestroysWhatItReadsNorWhatIsNoRawlog)
+{
+    const TemporaryFolder folder;
+    const std::string in = folder / "in";
+    writeFolder(in, 0.5);
+    std::ofstream(folder / "rig.yaml") << "imu: {label: 'IMU'}\n";
+    std::ofstream(folder / "log.rawlog.part") << "mine";
+    fs::copy_file(kSample, folder / "source.rawlog");
+    fs::create_symlink(folder / "source.rawlog", folder / "link.rawlog");
+    fs::create_hard_link(folder / "source.rawlog", folder / "second.rawlog");
+    const auto refuses = [&](const std::string& source, const std::string& output)
+    {
+        const std::string before = contentOf(output);
+        const ProgramRun run = import(source + " -w -r " + (folder / "rig.yaml") + " -o " + output);
+        EXPECT_EQ(run.exit_code, 2) << output << ": " << run.output;
+        EXPECT_THAT(run.output, HasSubstr(output));
+        EXPECT_EQ(contentOf(output), before) << output;
+    };
+    for (const char* output : {"source.rawlog", "link.rawlog", "second.rawlog"})
+        refuses(folder / "source.rawlog", folder / output);
+    refuses(folder / "log.rawlog.part", folder / "log.rawlog");
+    EXPECT_EQ(contentOf(folder / "log.rawlog.part"), "mine");
+    refuses(in, folder / "rig.yaml");
+    refuses(in, in + "/imu.csv");
+}
+
+TEST(AnImport, DoesNotWriteWhatAnotherIsWriting)
+{
+    const TemporaryFolder folder;
+    const std::string in = folder / "in", log = folder / "log.rawlog";
+    writeFolder(in, 0.5);
+    RawlogWriter other(log);
+    other.write(ImuSample{});
+    const ProgramRun run = import(in + " -o " + log);
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_THAT(run.output, HasSubstr("another program"));
+    other.close();
+    EXPECT_TRUE(isRawlog(log));
 }
 
 TEST(AnImport, ThatLacksAPartGivesThreeAndWritesTheRest)

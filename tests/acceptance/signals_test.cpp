@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -77,12 +78,12 @@ class Child
     pid_t pid_;
 };
 
-/** A run that is sent a signal as soon as the first scans are matched. */
+/** A run that is sent a signal as soon as some scans are matched. */
 class SignalledRun : public testing::Test
 {
  protected:
-    /** The exit code. */
-    int run(int signal, bool ignore_hangup)
+    /** The exit code; -1 if the signal ended it. */
+    int run(int signal, bool ignore_hangup, int scans = 1)
     {
         int ends[2];
         EXPECT_EQ(pipe(ends), 0);
@@ -93,11 +94,12 @@ class SignalledRun : public testing::Test
         close(ends[1]);
         char buffer[256];
         bool sent = false;
+        const auto matched = [this] { return std::count(said_.begin(), said_.end(), '\n'); };
         while (const auto n = read(ends[0], buffer, sizeof buffer))  // a line a scan
         {
             if (n < 0) break;
             said_.append(buffer, static_cast<std::size_t>(n));
-            if (sent || said_.find("iterations") == std::string::npos) continue;
+            if (sent || matched() < scans + 1) continue;  // before them one of the rest
             child.send(signal);
             sent = true;
         }
@@ -136,6 +138,33 @@ std::string nameOfSignal(const testing::TestParamInfo<int>& test)
 }
 
 INSTANTIATE_TEST_SUITE_P(By, AnInterruptedRun, testing::Values(SIGTERM, SIGHUP), nameOfSignal);
+
+TEST(ARunWhoseFileReachesItsLimit, SavesTheRestAndNamesTheCause)
+{
+    const TemporaryFolder folder;
+    const std::string out = folder / "out";
+    const ProgramRun run = runProgram(  // blocks of 512 bytes: 1.5 MB; the map has more
+        "sh -c 'ulimit -f 3000; " TAUT_SLAM " -i " + kSample + " -o " + out +
+            " --no-pictures --threads 1 -s output.point_spacing=0.01'",
+        "");
+    EXPECT_EQ(run.exit_code, 1) << run.output;
+    EXPECT_NE(run.output.find("map.ply' cannot be written: File too large"), std::string::npos)
+        << run.output;
+    const auto poses = readTum(out + "/trajectory.tum").size();
+    EXPECT_GE(poses, 1U);
+    EXPECT_EQ(nlohmann::json::parse(contentOf(out + "/metrics.json"))["result"]["poses"], poses);
+    EXPECT_GT(readPlyPoints(out + "/map.ply").size(), 50'000U);
+}
+
+TEST_F(SignalledRun, ThatIsKilledLeavesWhatWasDone)
+{
+    EXPECT_EQ(run(SIGKILL, false, 10), -1);
+    const auto poses = readTum(out_ + "/trajectory.tum").size();
+    EXPECT_GE(poses, 8U);
+    EXPECT_GT(readPlyPoints(out_ + "/map.ply").size(), 1000U);
+    EXPECT_EQ(
+        readTum(out_ + "/trajectory.tum").size(), readKitti(out_ + "/trajectory_kitti.txt").size());
+}
 
 using ARunUnderNohup = SignalledRun;
 

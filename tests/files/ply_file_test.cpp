@@ -86,13 +86,26 @@ TEST_F(PlyFile, AWriterThatGoesOutOfScopeHasClosedTheFile)
     EXPECT_EQ(readPlyPoints(path_).size(), 1U);
 }
 
-TEST_F(PlyFile, AFileThatWasNeverClosedIsRefused)
+TEST_F(PlyFile, AFileIsWholeAfterEachFlush)
+{
+    PlyPointWriter writer(path_);
+    EXPECT_TRUE(readPlyPoints(path_).empty());
+    for (int i = 0; i < 1000; i++) writer.append({});  // what a stream would not hold back
+    EXPECT_TRUE(readPlyPoints(path_).empty());
+    writer.flush();
+    EXPECT_EQ(readPlyPoints(path_).size(), 1000U);
+    writer.append({});
+    writer.flush();
+    EXPECT_EQ(readPlyPoints(path_).size(), 1001U);
+}
+
+TEST_F(PlyFile, AFileWithMoreThanItsHeaderStatesIsRefused)
 {
     PlyPointWriter writer(path_);
     writer.append({});
     writer.close();
     std::string text = readText(path_);
-    text.replace(text.find("vertex 1"), 8, "vertex 0");  // as a killed program leaves it
+    text.replace(text.find("vertex 1"), 8, "vertex 0");
     expectError(text, "holds more data than the 0 vertices");
 }
 
@@ -198,5 +211,5 @@ TEST_F(PlyFile, AFullDiskIsAnError)
             for (int i = 0; i < 100000; ++i) writer.append({});
             writer.close();
         },
-        ThrowsMessage<std::runtime_error>(HasSubstr("cannot be written")));
+        ThrowsMessage<std::runtime_error>(HasSubstr("cannot be written: No space left on device")));
 }

@@ -139,5 +139,17 @@ TEST(AnImportedSample, ThatGoesBackOrIsNotFiniteIsLeftOut)
     EXPECT_EQ(o.warnings.count("imu_invalid"), 1U);
     EXPECT_EQ(o.warnings.count("scan_time"), 1U);
 }
+
+TEST(AnImportedStamp, IsJudgedByThoseAroundIt)
+{
+    auto items = samples(0, 3, 1, 1);
+    std::get<ImuSample>(items[60]).t += 3600'000'000'000;
+    std::swap(items[100], items[103]);
+    const Outcome o = check(items);
+    EXPECT_EQ(o.imu.size(), 299U);
+    EXPECT_EQ(o.warnings.count("stamp_outlier"), 1U);
+    EXPECT_GE(o.warnings.count("imu_order"), 1U);
+    EXPECT_EQ(o.warnings.count("imu_time"), 0U);
+}
 }  // namespace
 }  // namespace taut::test

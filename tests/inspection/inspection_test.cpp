@@ -136,7 +136,7 @@ TEST_F(Doctor, FindsStampsThatRepeatOrGoBackward)
     EXPECT_THAT(
         kindsOf(found),
         UnorderedElementsAre(
-            "imu_duplicate", "imu_time", "scan_duplicate", "scan_time", "lidar_gap"));
+            "imu_duplicate", "imu_order", "scan_duplicate", "scan_time", "lidar_gap"));
     for (const Finding& f : found)
         if (f.kind == "imu_duplicate")
         {
@@ -275,7 +275,7 @@ TEST_F(Doctor, SurvivesValuesThatNoSensorGives)
         log_.write(path_);
         InspectionConfig config;
         config.window = 3;
-        EXPECT_THAT(kindsOf(inspect(config).findings), Contains("imu_units"));
+        EXPECT_THAT(kindsOf(inspect(config).findings), Contains("imu_outlier"));
     }
 }
 

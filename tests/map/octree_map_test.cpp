@@ -56,6 +56,19 @@ TEST(OctreeMap, SigmaIsTheThicknessOfTheSurface)
     }
 }
 
+// Beyond what an integer counts in leaves: for the undefined-behaviour sanitizer.
+TEST(OctreeMap, GoesAlongHoweverFarThePoseGoes)
+{
+    OctreeMap map;
+    const Patch patch = floorAt(1, 0.01);
+    see(map, patch);
+    map.slide({1e12, -1e12, 0});
+    EXPECT_EQ(map.size(), 0u);
+    map.slide(Vector3d::Zero());
+    see(map, patch);
+    EXPECT_EQ(matchOne(map, {0.3, 0.2, 1}, FeatureKind::Any).surface, Surface::Plane);
+}
+
 TEST(OctreeMap, AThinSurfaceIsNotBelievedToBeThinner)
 {
     OctreeMap map;

@@ -90,7 +90,7 @@ TEST_F(SensorLabels, AnExpressionThatMatchesNoImuIsAWarning)
     const auto log = readAll(config_);
     EXPECT_EQ(log.scans.size(), 20u);
     EXPECT_FALSE(log.progress.has_imu);
-    ASSERT_EQ(log.warnings.count("no_imu"), 1u);
+    ASSERT_EQ(log.warnings.count("imu_not_found"), 1u);
     EXPECT_THAT(log.warnings.kept()[0].text, HasSubstr("IMU_A"));
 }
 

@@ -32,19 +32,39 @@ class TimeAndValue : public RawlogTest
     RawlogConfig config_;
 };
 
-TEST_F(TimeAndValue, ImuSamplesThatDoNotMoveForwardInTimeAreSkipped)
+TEST_F(TimeAndValue, ImuSamplesThatDoNotMoveForwardInTimeAreSkippedOrSorted)
 {
-    for (const int t : {0, 10, 20, 20, 15, 30}) log_.add(mrptImu(at(t)));
+    for (const int t : {0, 10, 20, 20, 15, 30, -2000, 40}) log_.add(mrptImu(at(t)));
     log_.add(mrptScan(at(0)));
     const auto content = read();
     std::vector<Time> times;
     for (const auto& sample : content.imu) times.push_back(sample.t);
-    EXPECT_EQ(times, (std::vector<Time>{at(0), at(10), at(20), at(30)}));
-    ASSERT_EQ(content.warnings.count("imu_duplicate"), 1u);
-    ASSERT_EQ(content.warnings.count("imu_time"), 1u);
-    EXPECT_THAT(content.warnings.kept()[0].text, HasSubstr("same stamp"));
-    EXPECT_THAT(content.warnings.kept()[1].text, HasSubstr("backward by 0.005000 s"));
-    EXPECT_EQ(content.warnings.kept()[1].t, at(15));
+    EXPECT_EQ(times, (std::vector<Time>{at(0), at(10), at(15), at(20), at(30), at(40)}));
+    ASSERT_EQ(content.warnings.kept().size(), 3u);
+    EXPECT_EQ(content.warnings.kept()[0].kind, "imu_order");
+    EXPECT_THAT(content.warnings.kept()[0].text, HasSubstr("0.005000 s late"));
+    EXPECT_EQ(content.warnings.kept()[1].kind, "imu_duplicate");
+    EXPECT_THAT(content.warnings.kept()[1].text, HasSubstr("same stamp"));
+    EXPECT_EQ(content.warnings.kept()[2].kind, "imu_time");
+    EXPECT_THAT(content.warnings.kept()[2].text, HasSubstr("backward by 2.030000 s"));
+    EXPECT_EQ(content.progress.skipped, 2u);
+}
+
+TEST_F(TimeAndValue, OneStampInTheFutureIsSkippedAlone)
+{
+    for (int k = 0; k < 30; k++)
+    {
+        for (int i = 0; i < 10; i++)
+            log_.add(mrptImu(at(100 * k + 10 * i + (k == 0 && i == 0 ? 3'600'000 : 0))));
+        log_.add(mrptScan(at(100 * k + (k == 14 ? 3'600'000 : 0))));
+    }
+    const auto content = read();
+    EXPECT_EQ(content.imu.size(), 299u);
+    EXPECT_EQ(content.scans.size(), 29u);
+    EXPECT_EQ(content.warnings.count("stamp_outlier"), 2u);
+    EXPECT_THAT(content.warnings.kept()[0].text, HasSubstr("of an IMU sample is 3599.990000 s"));
+    EXPECT_EQ(content.progress.first, at(10));
+    EXPECT_EQ(content.progress.now, at(2990));
     EXPECT_EQ(content.progress.skipped, 2u);
 }
 
@@ -97,6 +117,46 @@ TEST_F(TimeAndValue, ImuSamplesThatAreNotFiniteOrLackAValueAreSkipped)
     const auto content = read();
     EXPECT_EQ(content.imu.size(), 2u);
     EXPECT_EQ(content.warnings.count("imu_invalid"), 2u);
+}
+
+TEST_F(TimeAndValue, ImuSamplesBeyondAnyRangeAreSkippedAndNamed)
+{
+    const ImuSample hit{0, Vector3d::Zero(), Vector3d(0, 1e6, 9.81)};
+    const ImuSample spun{0, Vector3d(0, 0, -400), Vector3d(0, 0, 9.81)};
+    const ImuSample hard{0, Vector3d(0, 0, 30), Vector3d(0, 400, 9.81)};
+    log_.add(mrptImu(at(0))).add(mrptImu(at(10), "IMU", hit)).add(mrptImu(at(20), "IMU", spun));
+    log_.add(mrptImu(at(30), "IMU", hard)).add(mrptScan(at(0)));
+    auto content = read();
+    EXPECT_EQ(content.imu.size(), 2u);
+    ASSERT_EQ(content.warnings.count("imu_outlier"), 2u);
+    EXPECT_THAT(content.warnings.kept()[0].text, HasSubstr("1e+06 m/s^2"));
+    config_.rig.imu.max_accel = 160;
+    content = read();
+    EXPECT_EQ(content.imu.size(), 1u);
+    config_.rig.imu.max_rate = 500;
+    EXPECT_EQ(read().imu.size(), 2u);
+}
+
+TEST_F(TimeAndValue, AFewPointsWithAWrongTimeDoNotMoveTheEndOfASweep)
+{
+    for (int k = 0; k < 10; k++)
+    {
+        auto scan = mrptScan(at(100 * k));
+        if (k == 4) scan.point_cloud.timestamp[60] = mrptTime(at(100 * k + 900));
+        if (k == 6)  // more than a mistake: as they are
+            for (std::size_t i = 95; i < 100; i++)
+                scan.point_cloud.timestamp[i] = mrptTime(at(100 * k + 150));
+        log_.add(scan);
+    }
+    const auto content = read();
+    ASSERT_EQ(content.scans.size(), 10u);
+    EXPECT_EQ(content.scans[4].points.size(), 99u);
+    EXPECT_EQ(content.scans[4].end, at(499));
+    EXPECT_EQ(content.scans[5].points.size(), 100u);
+    EXPECT_EQ(content.scans[6].end, at(750));
+    ASSERT_EQ(content.warnings.count("scan_point_times"), 1u);
+    EXPECT_THAT(content.warnings.kept()[0].text, HasSubstr("1 points of 100"));
+    EXPECT_EQ(content.progress.points_bad_time, 1u);
 }
 
 TEST_F(TimeAndValue, AnImuInTheRightUnitsIsNotDoubted)

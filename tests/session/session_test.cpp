@@ -12,6 +12,7 @@
 #include "recording.h"
 #include "taut/core/Yaml.h"
 #include "taut/render/OSMesaRenderer.h"
+#include "taut/session/ResultFolder.h"
 #include "taut/trajectory/TrajectoryFile.h"
 #include "temporary_folder.h"
 
@@ -117,6 +118,58 @@ TEST_F(SessionTest, SavesWhatWasDoneBeforeAStreamFailed)
     EXPECT_GT(outcome.poses, 15);
     EXPECT_GE(linesOf("trajectory.tum"), static_cast<std::size_t>(outcome.poses));
     EXPECT_EQ(metrics()["result"]["poses"], outcome.poses);
+}
+
+TEST_F(SessionTest, AFileThatTheDiskDoesNotTakeKeepsNoneOfTheOthers)
+{
+    if (!std::ofstream("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+    for (const char* file : {"map.ot", "loops.csv"})
+        std::filesystem::create_symlink("/dev/full", config.folder + "/" + file);
+    Player player(imu, scans);
+    const SessionOutcome outcome =
+        Session(config, warnings).run(player, [](double) { return true; });
+    EXPECT_EQ(
+        outcome.failure, "cannot write '" + config.folder + "/map.ot': No space left on device");
+    EXPECT_EQ(outcome.poses, static_cast<int>(scans.size()));
+    EXPECT_EQ(linesOf("trajectory.tum"), scans.size() + 1);
+    EXPECT_EQ(metrics()["result"]["poses"], scans.size());
+    EXPECT_FALSE(std::filesystem::exists(folder / "run/.taut-reserve"));
+}
+
+TEST_F(SessionTest, NobodyElseWritesToItsFolder)
+{
+    {
+        Session session(config, warnings);
+        EXPECT_THROW(Session(config, warnings), std::runtime_error);
+        EXPECT_THROW(prepareResultFolder(config.folder, true, {}), FolderInUse);
+    }
+    Session after(config, warnings);
+}
+
+TEST_F(SessionTest, NamesThatAreNotUtf8AreInTheMetricsAllTheSame)
+{
+    config.input = folder / "h\xe4ll.rawlog";
+    config.method_file = "m\xfcthod.yaml";
+    Player player(imu, scans);
+    const SessionOutcome outcome =
+        Session(config, warnings).run(player, [](double) { return true; });
+    EXPECT_EQ(outcome.failure, "");
+    EXPECT_EQ(metrics()["method"]["file"], "m\uFFFDthod.yaml");
+}
+
+TEST_F(SessionTest, ALaterErrorDoesNotHideTheFirst)
+{
+    if (!std::ofstream("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+    for (const char* file : {"map.ot", "states.csv"})
+        std::filesystem::create_symlink("/dev/full", config.folder + "/" + file);
+    Player player(imu, scans);
+    const SessionOutcome outcome =
+        Session(config, warnings).run(player, [](double) { return true; });
+    EXPECT_EQ(
+        outcome.failure,
+        "cannot write '" + config.folder + "/states.csv': No space left on device");
+    EXPECT_GE(warnings.count("not_saved"), 1u);
+    EXPECT_GE(metrics()["warnings"]["not_saved"], 1);
 }
 
 TEST_F(SessionTest, AnInterruptedOneIsPartial)

@@ -205,6 +205,35 @@ TEST_F(SimulateApp, ReplaysATrajectory)
         EXPECT_LT((again[i].T_world_imu.p - first[i].T_world_imu.p).norm(), 0.03) << i;
 }
 
+TEST_F(SimulateApp, ReplacesRecordingsAndNothingElse)
+{
+    ASSERT_EQ(simulate("--quiet --points").exit_code, 0);
+    ASSERT_EQ(simulate("--quiet --points --seed 2").exit_code, 0);
+    for (const auto& entry : std::filesystem::directory_iterator(file("")))
+        EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+    std::ofstream(file("log.gt.tum")) << "mine";
+    std::ofstream(file("notes")) << "mine";
+    EXPECT_EQ(simulate("--quiet").exit_code, 2);
+    EXPECT_EQ(contentOf(file("log.gt.tum")), "mine");
+    EXPECT_EQ(run("-c " TAUT_SCENARIOS "/hall_violent.yaml -o " + file("notes")).exit_code, 2);
+    EXPECT_EQ(contentOf(file("notes")), "mine");
+}
+
+TEST_F(SimulateApp, NeverOverwritesWhatItReads)
+{
+    ASSERT_EQ(simulate("--quiet --duration 3", "first").exit_code, 0);
+    const std::string truth = contentOf(file("first.gt.tum"));
+    const test::ProgramRun replay = simulate(
+        "--quiet --set motion.type=replay --set motion.file=" + file("first.gt.tum"), "first");
+    EXPECT_EQ(replay.exit_code, 2) << replay.output;
+    EXPECT_EQ(contentOf(file("first.gt.tum")), truth);
+    std::filesystem::copy_file(TAUT_SCENARIOS "/hall_violent.yaml", file("scenario.yaml"));
+    std::filesystem::create_symlink(file("scenario.yaml"), file("link.rawlog"));
+    const std::string scenario = contentOf(file("scenario.yaml"));
+    EXPECT_EQ(run("-c " + file("scenario.yaml") + " -o " + file("link.rawlog")).exit_code, 2);
+    EXPECT_EQ(contentOf(file("scenario.yaml")), scenario);
+}
+
 TEST_F(SimulateApp, SaysWhatIsWrong)
 {
     EXPECT_EQ(run("--help").exit_code, 0);

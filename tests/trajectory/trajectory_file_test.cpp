@@ -127,6 +127,46 @@ TEST(TumFile, DropsARepeatedStampWithAWarning)
     EXPECT_EQ(warnings[0].t, 1'000'000'000);
 }
 
+TEST(TumFile, LeavesOutACutLastLineWithAWarning)
+{
+    for (const char* cut : {"3 0 0", "3 0 0 0 0 0 0 -", "3.00 1 2 3 0 0 0 0.", "3 0 0 0 0 0 0 0.1"})
+    {
+        const TemporaryFile file(std::string("1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n") + cut);
+        std::vector<Warning> warnings;
+        EXPECT_EQ(
+            readTum(file.path(), [&](const Warning& w) { warnings.push_back(w); }).size(), 2u);
+        ASSERT_EQ(warnings.size(), 1u) << cut;
+        EXPECT_EQ(warnings[0].kind, "cut_line");
+        EXPECT_THAT(warnings[0].text, HasSubstr(".txt:3: "));
+    }
+}
+
+TEST(TumFile, HoldsEachPoseAsSoonAsItIsWritten)
+{
+    const TemporaryFile file;
+    TumWriter writer(file.path());
+    for (Time t = 1; t < 4; t++)
+    {
+        writer.write({t, {}});
+        EXPECT_EQ(readTum(file.path()).size(), static_cast<std::size_t>(t));
+    }
+}
+
+TEST(TumFile, NamesTheCauseWhereTheDiskIsFull)
+{
+    if (!std::ofstream("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+    try
+    {
+        TumWriter writer("/dev/full");
+        writer.write({1, {}});
+        FAIL();
+    }
+    catch (const std::runtime_error& e)
+    {
+        EXPECT_THAT(e.what(), HasSubstr("cannot write '/dev/full': No space left on device"));
+    }
+}
+
 TEST(TumFile, WriterRefusesTimeThatDoesNotIncrease)
 {
     const TemporaryFile file;

@@ -1,4 +1,7 @@
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
 #include <stdexcept>
 
 #include "taut/files/PlyFile.h"
@@ -7,7 +10,10 @@ namespace taut
 {
 namespace
 {
-/** The header has the same length for every number of points, so that close() can write it again.
+constexpr std::size_t kRowBytes = 16;
+constexpr std::size_t kMostHeld = 1 << 20;  // [bytes] of rows
+
+/** The header has the same length for every number of points, so that flush() can write it again.
  */
 std::string header(std::size_t points)
 {
@@ -23,8 +29,8 @@ std::string header(std::size_t points)
 PlyPointWriter::PlyPointWriter(std::string path)
     : path_(std::move(path)), out_(path_, std::ios::binary)
 {
-    out_ << header(0);
-    checkStream();
+    if (!out_) fail();
+    flush();
 }
 
 PlyPointWriter::~PlyPointWriter()
@@ -38,9 +44,13 @@ PlyPointWriter::~PlyPointWriter()
     }
 }
 
-void PlyPointWriter::checkStream()
+void PlyPointWriter::fail()
 {
-    if (!out_) throw std::runtime_error("PLY file '" + path_ + "' cannot be written");
+    const std::string cause = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
+    out_.close();
+    std::error_code ignored;  // the header stands for no more than the last flush
+    std::filesystem::resize_file(path_, header(0).size() + whole_ * kRowBytes, ignored);
+    throw std::runtime_error("PLY file '" + path_ + "' cannot be written" + cause);
 }
 
 void PlyPointWriter::append(const PlyPoint& point)
@@ -51,19 +61,28 @@ void PlyPointWriter::append(const PlyPoint& point)
             "PLY file '" + path_ + "': point " + std::to_string(size_) + " is not finite");
     const float row[] = {
         point.position.x(), point.position.y(), point.position.z(), point.intensity};
-    out_.write(reinterpret_cast<const char*>(row), sizeof(row));
-    checkStream();
+    static_assert(sizeof(row) == kRowBytes);
+    rows_.append(reinterpret_cast<const char*>(row), kRowBytes);
     ++size_;
+    if (rows_.size() >= kMostHeld) flush();
+}
+
+void PlyPointWriter::flush()
+{
+    errno = 0;
+    out_.seekp(0, std::ios::end);
+    out_ << rows_ << std::flush;  // before the header, which must not promise too much
+    out_.seekp(0);
+    out_ << header(size_) << std::flush;
+    if (!out_) fail();
+    rows_.clear();
+    whole_ = size_;
 }
 
 void PlyPointWriter::close()
 {
     if (!out_.is_open()) return;
-    out_.seekp(0);
-    out_ << header(size_);
-    out_.flush();
-    checkStream();
+    flush();
     out_.close();
-    checkStream();
 }
 }  // namespace taut

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "IndexedGraph.h"
+#include "taut/core/writeError.h"
 
 namespace taut
 {
@@ -288,7 +289,7 @@ void writeG2o(const std::string& path, const PoseGraph& graph)
     const IndexedGraph check(graph);  // no file that nobody could read
     const std::string part = path + ".part";
     std::ofstream file(part);
-    if (!file) throw std::runtime_error("cannot write '" + part + "'");
+    if (!file) throw writeError(part);
     file << kMark << " graph " << graph.vertices.size() << ' ' << graph.relative_edges.size() << ' '
          << graph.gravity_edges.size() << '\n';
     for (const GraphVertex& v : graph.vertices)
@@ -305,9 +306,9 @@ void writeG2o(const std::string& path, const PoseGraph& graph)
         file << text(e) << '\n';
     }
     for (const GravityEdge& e : graph.gravity_edges) file << text(e) << '\n';
+    flushOrThrow(file, path);
     file.close();
-    if (!file || std::rename(part.c_str(), path.c_str()) != 0)
-        throw std::runtime_error("error while writing '" + path + "'");
+    if (std::rename(part.c_str(), path.c_str()) != 0) throw writeError(path);
 }
 
 PoseGraph readG2o(const std::string& path)

@@ -16,6 +16,34 @@ std::string line(const std::string& what, const Unit& unit, const std::string& r
     return what + " in " + unit.name + (unit.factor == 1 ? "" : ", converted") + " (" + reason +
            ")";
 }
+StampOrder::Sensor sensorOf(const ImportedItem& item)
+{
+    return std::holds_alternative<ImuSample>(item) ? StampOrder::Sensor::Imu
+                                                   : StampOrder::Sensor::Lidar;
+}
+
+Time stampOf(const ImportedItem& item)
+{
+    if (const auto* sample = std::get_if<ImuSample>(&item)) return sample->t;
+    if (const auto* scan = std::get_if<Scan>(&item)) return scan->stamp;
+    return std::get<PacketScan>(item).stamp;
+}
+
+void move(ImuSample& sample, Duration shift)
+{
+    sample.t += shift;
+}
+
+void move(Scan& scan, Duration shift)
+{
+    scan.stamp += shift;
+    scan.end += shift;
+}
+
+void move(PacketScan& scan, Duration shift)
+{
+    scan.stamp += shift;
+}
 }  // namespace
 
 CheckedSource::CheckedSource(
@@ -61,9 +89,37 @@ void CheckedSource::convert(ImuSample& sample)
             " rad/s: no gyro gets there; left as it is");
 }
 
+std::optional<ImportedItem> CheckedSource::nextInOrder()
+{
+    while (true)
+    {
+        while (!all_read_ && !order_.ready())
+        {
+            auto item = source_->next();
+            all_read_ = !item;
+            if (item)
+                ahead_.emplace(order_.push(sensorOf(*item), stampOf(*item)), std::move(*item));
+        }
+        const auto judged = order_.pop();
+        if (!judged) return {};
+        ImportedItem item = std::move(ahead_.at(judged->id));
+        ahead_.erase(judged->id);
+        const bool outlier = judged->verdict == StampOrder::Verdict::Outlier;
+        if (judged->verdict != StampOrder::Verdict::Good)
+        {
+            const bool is_sample = std::holds_alternative<ImuSample>(item);
+            const auto finding = findingOf(*judged, is_sample ? "a sample of the IMU" : "a scan");
+            warn(stampOf(item), finding.kind, finding.text + (outlier ? "; left out" : ""));
+        }
+        if (outlier) continue;
+        std::visit([&](auto& i) { move(i, judged->shift); }, item);
+        return item;
+    }
+}
+
 std::optional<ImportedItem> CheckedSource::nextValid()
 {
-    while (auto item = source_->next())
+    while (auto item = nextInOrder())
         if (std::visit([this](const auto& i) { return valid(i); }, *item))
         {
             if (!std::holds_alternative<ImuSample>(*item)) held_scans_++;

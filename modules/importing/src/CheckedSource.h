@@ -1,19 +1,22 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <memory>
 
 #include "taut/core/ImuUnits.h"
 #include "taut/core/Warning.h"
 #include "taut/importing/ImportOptions.h"
 #include "taut/importing/ImportSource.h"
+#include "taut/rawlog/StampOrder.h"
 
 namespace taut
 {
 /** Stands before every source: judges the units of the IMU by its first 2 s and converts to m/s^2
  * and rad/s, and lets nothing pass that goes back in time or is not finite. Throws at the end if
  * there was no scan. Warnings: imu_units     values that fit no unit, or another one than the first
- * seconds said imu_time      stamp of the IMU equal to or earlier than the one before (left out)
+ * seconds said stamp_outlier, imu_order, clock_back   see StampOrder
+ *   imu_time      stamp of the IMU equal to or earlier than the one before (left out)
  *   imu_invalid   values that are not finite (left out)
  *   scan_time     stamp of a scan equal to or earlier than the one before (left out) */
 class CheckedSource : public ImportSource
@@ -29,6 +32,7 @@ class CheckedSource : public ImportSource
     std::vector<std::string> findings() const override;
 
  private:
+    std::optional<ImportedItem> nextInOrder();
     std::optional<ImportedItem> nextValid();
     bool valid(const ImuSample& sample);
     bool valid(const Scan& scan) { return isLater(scan.stamp, last_scan_, "scan_time", "scan"); }
@@ -47,6 +51,9 @@ class CheckedSource : public ImportSource
     std::unique_ptr<ImportSource> source_;
     ImportOptions options_;
     WarningSink warn_;
+    StampOrder order_;
+    std::map<std::size_t, ImportedItem> ahead_;  // by its id there
+    bool all_read_ = false;
     std::deque<ImportedItem> held_;  // until the units are known
     bool judged_ = false, finished_ = false, too_fast_ = false;
     ImuUnitJudge judge_;

@@ -1,5 +1,6 @@
 #include "MergedSource.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace taut
@@ -14,21 +15,32 @@ std::optional<ImportedItem> MergedSource::next()
     if (!std::exchange(started_, true))
     {
         if (streams_.next_sample) sample_ = streams_.next_sample();
+        if (sample_) sample_after_ = streams_.next_sample();
         scan_ = streams_.next_scan();
+        if (scan_) scan_after_ = streams_.next_scan();
     }
-    if (sample_ && (!scan_ || sample_->t < scan_->end))
+    if (sampleIsDue())
     {
         any_sample_ = true;
-        return std::exchange(sample_, streams_.next_sample());
+        auto after = sample_after_ ? streams_.next_sample() : std::nullopt;
+        return std::exchange(sample_, std::exchange(sample_after_, std::move(after)));
     }
     if (scan_)
     {
         scans_++;
         if (scan_->already_undistorted) undistorted_++;
-        return std::exchange(scan_, streams_.next_scan());
+        auto after = scan_after_ ? streams_.next_scan() : std::nullopt;
+        return std::exchange(scan_, std::exchange(scan_after_, std::move(after)));
     }
     checkEnd();
     return {};
+}
+
+bool MergedSource::sampleIsDue() const
+{
+    if (!sample_ || !scan_) return sample_.has_value();
+    const Time t = sample_after_ ? std::min(sample_->t, sample_after_->t) : sample_->t;
+    return t < (scan_after_ ? std::min(scan_->end, scan_after_->end) : scan_->end);
 }
 
 std::vector<std::string> MergedSource::findings() const

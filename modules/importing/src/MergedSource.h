@@ -20,7 +20,8 @@ struct SensorStreams
 };
 
 /** Brings the streams of two sensors into the order of time: a scan when it has ended, as a
- * recorder would. Warns ("no_imu") at the end if there is an IMU without samples. */
+ * recorder would. One wrong stamp does not hold its stream back: that of the next counts too. Warns
+ * ("no_imu") at the end if there is an IMU without samples. */
 class MergedSource : public ImportSource
 {
  public:
@@ -32,12 +33,13 @@ class MergedSource : public ImportSource
 
  private:
     void checkEnd();
+    bool sampleIsDue() const;
 
     std::string path_;
     SensorStreams streams_;
     WarningSink warn_;
-    std::optional<ImuSample> sample_;
-    std::optional<Scan> scan_;
+    std::optional<ImuSample> sample_, sample_after_;
+    std::optional<Scan> scan_, scan_after_;
     bool started_ = false, ended_ = false, any_sample_ = false;
     std::size_t scans_ = 0, undistorted_ = 0;
 };

@@ -13,6 +13,12 @@ std::string adviceFor(const std::string& kind)
         {"rawlog_truncated",
          "copy the file again or record again; what is before the damage can be used"},
         {"no_stamp", "let the driver stamp its observations"},
+        {"stamp_outlier", "let the driver check its stamps; what carries one is left out"},
+        {"imu_order",
+         "packets came in the wrong order: the samples are sorted; if it happens often, let the "
+         "recorder write in the order of time"},
+        {"clock_back",
+         "keep NTP from stepping the clock while recording; later stamps are moved by as much"},
         {"imu_time",
          "a clock was set back while recording, or packets came in the wrong order: keep NTP from "
          "stepping the clock; the samples are skipped"},
@@ -25,6 +31,9 @@ std::string adviceFor(const std::string& kind)
         {"scan_duplicate",
          "the driver gives scans twice or stamps them too coarsely; the second of each is skipped"},
         {"imu_invalid", "let the driver give rates and specific forces in each sample"},
+        {"imu_outlier",
+         "bytes are lost or swapped between sensor and recorder, or the units are wrong; such "
+         "samples are left out"},
         {"imu_units", "look at the units and set the scales in the rig file"},
         {"imu_late", "start the IMU before the LiDAR, or cut the start off with --from-time"},
         {"scan_overlap",
@@ -33,7 +42,7 @@ std::string adviceFor(const std::string& kind)
         {"scan_invalid", "see the text; the scans are skipped"},
         {"scan_empty", "is the sensor covered, or still starting? the scans are skipped"},
         {"rig_unused", "correct the label in the rig file"},
-        {"no_imu", "correct the label"}};
+        {"imu_not_found", "correct the label"}};
     const auto it = advice.find(kind);
     return it == advice.end() ? "" : it->second;
 }
@@ -81,7 +90,7 @@ Findings LogFindings::findings(const StreamProgress& progress, bool own_units) c
     if (progress.points_bad_time > 0)
         found.push_back(pointFinding(
             first_bad_time_, "point_times", progress.points_bad_time, progress.points,
-            "have a time 2 s or more away from their scan's",
+            "have a time that is not in their sweep",
             "the times of the points and the stamps come from different clocks, or are in "
             "different units"));
     return found;

@@ -2,7 +2,8 @@
 
 #include <fstream>
 #include <sstream>
-#include <stdexcept>
+
+#include "taut/core/writeError.h"
 
 namespace taut
 {
@@ -18,9 +19,9 @@ octomap::point3d toOctomap(const Vector3d& p)
 template <class Write>
 void writeFile(const std::string& path, const Write& write)
 {
+    errno = 0;
     std::ofstream file(path, std::ios::binary);
-    if (!file || !write(file) || !file.flush())
-        throw std::runtime_error("cannot write the occupancy map to " + path);
+    if (!file || !write(file) || !file.flush()) throw writeError(path);
 }
 
 /** What stands before the data of OctoMap's files: its own writers of it print on the terminal. */

@@ -218,8 +218,10 @@ void OctreeMap::recenter(const Vector3d& center_world)
     for (int i = 0; i < 3; i++)
     {
         const double blocks = std::round((center_world[i] - origin_[i]) / edge);
-        shift[static_cast<std::size_t>(i)] =
-            static_cast<int>(blocks * (1 << (StatisticsTree::kDepth - blockDepth())));
+        // Beyond the keys nothing is left that would have to be moved.
+        constexpr double kFurthest = 2 * kMiddleKey;
+        shift[static_cast<std::size_t>(i)] = static_cast<int>(
+            std::clamp(blocks * (1 << (StatisticsTree::kDepth - blockDepth())), -kFurthest, kFurthest));
         origin_[i] += blocks * edge;
     }
     blocks_.clear();

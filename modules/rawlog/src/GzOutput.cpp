@@ -1,5 +1,9 @@
 #include "GzOutput.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -10,8 +14,18 @@ namespace taut
 {
 GzOutput::GzOutput(std::string path) : path_(std::move(path)), part_(path_ + ".part")
 {
-    file_ = gzopen(part_.c_str(), "wb1");
-    if (!file_) throwFailed(std::strerror(errno));
+    const int file = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (file < 0) throwFailed(std::strerror(errno));
+    // What another program is writing is not emptied; what one that was killed left, is.
+    if (::flock(file, LOCK_EX | LOCK_NB) != 0 || ::ftruncate(file, 0) != 0)
+    {
+        const std::string cause =
+            errno == EWOULDBLOCK ? "another program is writing it now" : std::strerror(errno);
+        ::close(file);
+        throwFailed(cause);
+    }
+    file_ = gzdopen(file, "wb1");
+    if (!file_) throwFailed("not enough memory");
     gzbuffer(file_, 1u << 18);
 }
 
@@ -33,10 +47,12 @@ void GzOutput::write(const std::vector<std::uint8_t>& bytes)
 void GzOutput::close()
 {
     if (!file_) return;
+    errno = 0;
     if (gzclose_w(std::exchange(file_, nullptr)) != Z_OK)
     {
+        const std::string cause = errno != 0 ? std::strerror(errno) : "an earlier error";
         std::remove(part_.c_str());
-        throwFailed("the disk did not take all of it");
+        throwFailed(cause);
     }
     if (std::rename(part_.c_str(), path_.c_str()) != 0) throwFailed(std::strerror(errno));
 }

@@ -8,11 +8,14 @@
 
 namespace taut
 {
-/** A compressed file that gets its name only when it is complete. */
+/** A compressed file that gets its name only when it is complete. While it is written nobody else
+ * writes it. */
 class GzOutput
 {
  public:
-    /** Opens `path` + ".part". Throws std::runtime_error naming the file. */
+    /** Opens `path` + ".part" and locks it. Throws std::runtime_error naming the file and the
+     * cause.
+     */
     explicit GzOutput(std::string path);
     /** Removes what was written unless close() was called. */
     ~GzOutput();

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <regex>
-#include <stdexcept>
 #include <string>
+
+#include "taut/core/Config.h"
 
 namespace taut
 {
-/** Compiles a label expression; throws std::runtime_error quoting it if it is not valid. */
+/** Compiles a label expression; throws ConfigError quoting it if it is not valid. */
 inline std::regex labelExpression(const std::string& text)
 {
     try
@@ -15,7 +16,7 @@ inline std::regex labelExpression(const std::string& text)
     }
     catch (const std::regex_error& e)
     {
-        throw std::runtime_error(
+        throw ConfigError(
             "the sensor label '" + text + "' is not a regular expression: " + e.what());
     }
 }

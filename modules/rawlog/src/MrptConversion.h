@@ -35,9 +35,10 @@ inline Time toTime(mrpt::Clock::time_point t)
 /** Rounded to MRPT's 100 ns. */
 inline mrpt::Clock::time_point toMrptTime(Time t)
 {
-    const Time half = t < 0 ? -kNanosecondsPerTick / 2 : kNanosecondsPerTick / 2;
+    const Time rest = t % kNanosecondsPerTick;
+    const Time rounding = 2 * rest / kNanosecondsPerTick;  // 1, 0 or -1
     return mrpt::Clock::time_point(
-        mrpt::Clock::duration((t + half) / kNanosecondsPerTick + kTicksTo1970));
+        mrpt::Clock::duration(t / kNanosecondsPerTick + rounding + kTicksTo1970));
 }
 
 inline Pose toPose(const mrpt::poses::CPose3D& pose)

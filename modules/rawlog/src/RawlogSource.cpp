@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <deque>
+#include <exception>
+#include <map>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
@@ -16,6 +18,8 @@
 #include "ObservationReader.h"
 #include "ObservationToScan.h"
 #include "SensorChoice.h"
+#include "taut/core/format.h"
+#include "taut/rawlog/StampOrder.h"
 
 namespace taut
 {
@@ -46,6 +50,19 @@ const std::string& firstGiven(const std::string& a, const std::string& b)
 }
 }  // namespace
 
+bool isRawlog(const std::string& path)
+{
+    try
+    {
+        const ObservationReader reader(path);
+        return true;
+    }
+    catch (const std::runtime_error&)
+    {
+        return false;
+    }
+}
+
 struct RawlogSource::Impl
 {
     Impl(const RawlogConfig& c, WarningSink w)
@@ -63,16 +80,26 @@ struct RawlogSource::Impl
     std::optional<Measurement> next();
 
  private:
+    /** An observation with the verdict on its stamp. */
+    struct Judged
+    {
+        CObservation::Ptr observation;
+        StampOrder::Judged stamp;
+    };
+
     void lookAhead();
+    std::optional<Judged> judge();
+    bool take();
     std::optional<LogEntry> read();
     void account(const LogEntry& entry);
     template <class RigPart>
     void choose(
         SensorChoice& choice, const std::string& label, RigPart& rig, std::string& chosen_label);
     void setBody(const CObservationIMU& observation);
-    std::optional<Measurement> convert(const CObservation& observation);
-    std::optional<Measurement> convertImu(const CObservationIMU& observation);
-    std::optional<Measurement> convertLidar(const CObservation& observation);
+    std::optional<Measurement> convert(const Judged& judged);
+    std::optional<Measurement> convertImu(const CObservationIMU& observation, Duration shift);
+    std::optional<Measurement> convertLidar(const CObservation& observation, Duration shift);
+    bool withinRange(const ImuSample& sample);
     bool checkImuTime(Time t);
     bool checkScanTime(const Scan& scan);
     void checkPoints(const ScanBuilder& points, Time t);
@@ -98,7 +125,11 @@ struct RawlogSource::Impl
     StreamProgress progress;
 
  private:
-    std::deque<CObservation::Ptr> ahead;
+    StampOrder order;
+    std::map<std::size_t, CObservation::Ptr> ahead;  // by its id there
+    std::deque<Judged> judged_already;               // up to the first with a good stamp
+    std::size_t bytes_ahead = 0;
+    std::exception_ptr failure;  // of the reading: told when what was read before is given out
     std::optional<Pose> T_imu_vehicle;
     ImuUnitCheck unit_check;
     std::optional<Time> last_imu, last_scan, last_scan_end;
@@ -112,17 +143,71 @@ struct RawlogSource::Impl
  * sensor of a kind before any work was done. */
 void RawlogSource::Impl::lookAhead()
 {
-    std::size_t bytes = 0;
-    while (ahead.size() < kLookaheadCount && bytes < kLookaheadBytes)
+    while (ahead.size() < kLookaheadCount && bytes_ahead < kLookaheadBytes &&
+           order.elapsed() <= kLookahead && take())
     {
-        auto entry = read();
-        if (!entry) break;
-        if (const auto* o = dynamic_cast<const CObservationIMU*>(entry->observation.get()))
-            if (!T_imu_vehicle && imu.accepts(o->sensorLabel)) setBody(*o);
-        bytes += entry->bytes;
-        ahead.push_back(std::move(entry->observation));
-        if (progress.now - progress.first > kLookahead) break;
     }
+    if (failure) std::rethrow_exception(failure);
+    for (const auto& [id, observation] : ahead)
+        if (const auto* o = dynamic_cast<const CObservationIMU*>(observation.get()))
+            if (!T_imu_vehicle) setBody(*o);
+    while (progress.now == 0)
+    {
+        auto judged = judge();
+        if (!judged) break;
+        judged_already.push_back(std::move(*judged));
+    }
+    progress.first = progress.now;
+}
+
+/* Takes the next observation of the chosen sensors in. False at the end. */
+bool RawlogSource::Impl::take()
+{
+    if (failure) return false;
+    std::optional<LogEntry> entry;
+    try
+    {
+        entry = read();
+    }
+    catch (const std::exception&)
+    {
+        failure = std::current_exception();
+        return false;
+    }
+    if (!entry) return false;
+    const CObservation& observation = *entry->observation;
+    SensorChoice& choice = isLidar(observation) ? lidar : imu;
+    if (choice.chosen() != observation.sensorLabel) return true;
+    if (!isValidStamp(observation.timestamp))
+    {
+        skip(
+            progress.now, "no_stamp",
+            "an observation of '" + observation.sensorLabel + "' has no time stamp");
+        return true;
+    }
+    const auto id = order.push(
+        isLidar(observation) ? StampOrder::Sensor::Lidar : StampOrder::Sensor::Imu,
+        toTime(observation.timestamp));
+    bytes_ahead += entry->bytes;
+    ahead.emplace(id, std::move(entry->observation));
+    return true;
+}
+
+/* The next one, by whose stamp progress.now goes on. */
+std::optional<RawlogSource::Impl::Judged> RawlogSource::Impl::judge()
+{
+    while (!order.ready() && bytes_ahead < kLookaheadBytes && take())
+    {
+    }
+    const auto stamp = order.pop();
+    if (!stamp) return {};
+    Judged judged{std::move(ahead.at(stamp->id)), *stamp};
+    ahead.erase(stamp->id);
+    if (ahead.empty()) bytes_ahead = 0;
+    const Time t = toTime(judged.observation->timestamp) + stamp->shift;
+    if (stamp->verdict != StampOrder::Verdict::Outlier)
+        progress.now = progress.now == 0 ? t : std::max(progress.now, t);
+    return judged;
 }
 
 /* The next observation of a LiDAR or an IMU; the others are counted alone. */
@@ -147,10 +232,6 @@ void RawlogSource::Impl::account(const LogEntry& entry)
         choose(lidar, entry.label, config.rig.lidar, progress.lidar_label);
     else
         choose(imu, entry.label, config.rig.imu, progress.imu_label);
-    if (!isValidStamp(observation.timestamp)) return;
-    const Time t = toTime(observation.timestamp);
-    if (progress.first == 0) progress.first = progress.now = t;
-    progress.now = std::max(progress.now, t);
 }
 
 /* The rig's part is dropped if it describes another sensor than the one chosen. */
@@ -179,22 +260,22 @@ std::optional<Measurement> RawlogSource::Impl::next()
 {
     while (!finished)
     {
-        CObservation::Ptr observation;
-        if (ahead.empty())
+        std::optional<Judged> judged;
+        if (judged_already.empty())
         {
-            if (auto entry = read()) observation = std::move(entry->observation);
+            judged = judge();
         }
         else
         {
-            observation = std::move(ahead.front());
-            ahead.pop_front();
+            judged = std::move(judged_already.front());
+            judged_already.pop_front();
         }
-        if (!observation)
+        if (!judged)
         {
             finish();
             break;
         }
-        if (auto measurement = convert(*observation)) return measurement;
+        if (auto measurement = convert(*judged)) return measurement;
     }
     return {};
 }
@@ -202,6 +283,7 @@ std::optional<Measurement> RawlogSource::Impl::next()
 void RawlogSource::Impl::finish()
 {
     finished = true;
+    if (failure) std::rethrow_exception(failure);
     if (!reader.damage().empty())
         warn(
             progress.now, "rawlog_truncated",
@@ -219,39 +301,41 @@ void RawlogSource::Impl::finish()
     }
     if (!imu.chosen() && imu.byExpression())
         warn(
-            progress.now, "no_imu",
+            progress.now, "imu_not_found",
             "no IMU of the label asked for; labels of IMUs there: " + imu.describeSeen());
 }
 
 /* ---- conversion ---- */
 
-std::optional<Measurement> RawlogSource::Impl::convert(const CObservation& observation)
+std::optional<Measurement> RawlogSource::Impl::convert(const Judged& judged)
 {
+    const CObservation& observation = *judged.observation;
     const auto* as_imu = dynamic_cast<const CObservationIMU*>(&observation);
-    const bool mine = as_imu ? imu.chosen() == observation.sensorLabel
-                             : isLidar(observation) && lidar.chosen() == observation.sensorLabel;
-    const bool stamped = isValidStamp(observation.timestamp);
-    if (stamped && beyondEnd(toTime(observation.timestamp)))
+    const auto& [id, verdict, shift, amount] = judged.stamp;
+    if (verdict != StampOrder::Verdict::Good)
+    {
+        const auto finding = findingOf(judged.stamp, as_imu ? "an IMU sample" : "a scan");
+        if (verdict == StampOrder::Verdict::Outlier)
+        {
+            skip(progress.now, finding.kind, finding.text);
+            return {};
+        }
+        warn(progress.now, finding.kind, finding.text);
+    }
+    if (beyondEnd(toTime(observation.timestamp) + shift))
     {
         finish();
         return {};
     }
-    if (!mine) return {};
-    if (!stamped)
-    {
-        skip(
-            progress.now, "no_stamp",
-            "an observation of '" + observation.sensorLabel + "' has no time stamp");
-        return {};
-    }
-    return as_imu ? convertImu(*as_imu) : convertLidar(observation);
+    return as_imu ? convertImu(*as_imu, shift) : convertLidar(observation, shift);
 }
 
-std::optional<Measurement> RawlogSource::Impl::convertImu(const CObservationIMU& observation)
+std::optional<Measurement> RawlogSource::Impl::convertImu(
+    const CObservationIMU& observation, Duration shift)
 {
     using namespace mrpt::obs;
     ImuSample sample;
-    sample.t = toTime(observation.timestamp);
+    sample.t = toTime(observation.timestamp) + shift;
     if (sample.t < begin) return {};
     if (!T_imu_vehicle)
     {
@@ -278,10 +362,25 @@ std::optional<Measurement> RawlogSource::Impl::convertImu(const CObservationIMU&
         skip(sample.t, "imu_invalid", "an IMU sample has values that are not finite");
         return {};
     }
+    if (!withinRange(sample)) return {};
     if (!checkImuTime(sample.t) || sample.t - kLongestScan > end) return {};
     if (const auto doubt = unit_check.add(sample)) warn(sample.t, "imu_units", *doubt);
     progress.imu_samples++;
     return sample;
+}
+
+bool RawlogSource::Impl::withinRange(const ImuSample& sample)
+{
+    const double accel = sample.accel.norm(), rate = sample.gyro.norm();
+    const ImuRig& range = config.rig.imu;
+    if (accel <= range.max_accel && rate <= range.max_rate) return true;
+    skip(
+        sample.t, "imu_outlier",
+        format(
+            "an IMU sample says %.3g m/s^2 and %.3g rad/s, beyond its range (max_accel %.4g, "
+            "max_rate %.4g in the rig file)",
+            accel, rate, range.max_accel, range.max_rate));
+    return false;
 }
 
 bool RawlogSource::Impl::checkImuTime(Time t)
@@ -306,19 +405,23 @@ Pose RawlogSource::Impl::lidarPose(const CObservation& observation) const
     return T_imu_vehicle ? *T_imu_vehicle * T_vehicle_lidar : T_vehicle_lidar;
 }
 
-std::optional<Measurement> RawlogSource::Impl::convertLidar(const CObservation& observation)
+std::optional<Measurement> RawlogSource::Impl::convertLidar(
+    const CObservation& observation, Duration shift)
 {
-    const Duration clock_offset = fromSeconds(config.rig.lidar.clock_offset);
+    const Duration clock_offset = fromSeconds(config.rig.lidar.clock_offset) + shift;
     const Time t = toTime(observation.timestamp) + clock_offset;
     if (t < begin || t > end || enoughScans()) return {};
     try
     {
         ScanBuilder points = observationToPoints(observation, config.rig.lidar);
-        Scan scan = points.finish();
+        // A sweep ends before the next begins.
+        const auto interval = order.interval(StampOrder::Sensor::Lidar);
+        Scan scan = interval && *interval > 0 ? points.finish(*interval + kLargestOverlap)
+                                              : points.finish();
         correctBeams(scan, config.rig.lidar.beams);
         progress.points += points.seen();
         progress.points_not_finite += points.notFinite();
-        progress.points_bad_time += points.badTime();
+        progress.points_bad_time += points.badTime() + points.outside();
         scan.stamp += clock_offset;
         scan.end += clock_offset;
         scan.sensor_label = observation.sensorLabel;
@@ -373,6 +476,11 @@ bool RawlogSource::Impl::checkScanTime(const Scan& scan)
 
 void RawlogSource::Impl::checkPoints(const ScanBuilder& points, Time t)
 {
+    if (points.outside() > 0)
+        warn(
+            t, "scan_point_times",
+            std::to_string(points.outside()) + " points of " + std::to_string(points.seen()) +
+                " have a time outside of their sweep; dropped");
     const std::size_t bad = points.notFinite() + points.badTime();
     if (static_cast<double>(bad) <= kWorstBadShare * static_cast<double>(points.seen())) return;
     warn(

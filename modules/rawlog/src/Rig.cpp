@@ -83,6 +83,8 @@ void readImu(ConfigSection& section, const YamlNode* node, ImuRig& imu)
     if (given(node, "pose")) imu.T_vehicle_imu = T_vehicle_imu;
     section.key("accel_scale", imu.accel_scale, kPositive, "factor to m/s^2");
     section.key("gyro_scale", imu.gyro_scale, kPositive, "factor to rad/s");
+    section.key("max_accel", imu.max_accel, kPositive, "m/s^2; samples with more are left out");
+    section.key("max_rate", imu.max_rate, kPositive, "rad/s; samples with more are left out");
     auto& noise = section.section("noise");
     ImuNoise n;
     noise.key("gyro", n.gyro, kPositive, "rad/s/sqrt(Hz)");

@@ -61,6 +61,7 @@ void MapExport::add(
         const float intensity = i < raw.size() ? raw[i].intensity : 0;
         addPoint(points_world[i], std::isfinite(intensity) ? intensity : 0);
     }
+    ply_.flush();
     if (points_world.empty() || !isKey(state)) return;
     last_key_ = state;
     key_scans_++;

@@ -95,6 +95,8 @@ std::string Metrics::json(const Summary& s, const WarningLog& warnings) const
         {"scans", s.log.scans},
         {"imu_samples", s.log.imu_samples},
         {"skipped_observations", s.log.skipped},
+        {"points_not_finite", s.log.points_not_finite},
+        {"points_with_wrong_time", s.log.points_bad_time},
         {"incomplete", s.incomplete},
         {"lidar_label", s.log.lidar_label},
         {"imu_label", s.log.imu_label}};
@@ -147,6 +149,7 @@ std::string Metrics::json(const Summary& s, const WarningLog& warnings) const
     for (const Warning& w : warnings.kept())
         j["first_warnings"].push_back(
             {{"t", static_cast<double>(w.t) * 1e-9}, {"kind", w.kind}, {"text", w.text}});
+    // Names of files may hold any bytes.
     return j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 }  // namespace taut

@@ -1,6 +1,6 @@
 #include "taut/session/ResultFiles.h"
 
-#include <stdexcept>
+#include "taut/core/writeError.h"
 
 namespace taut
 {
@@ -11,15 +11,15 @@ constexpr std::size_t kMaxSample = 100'000;
 std::ofstream open(const std::string& path)
 {
     std::ofstream file(path);
-    if (!file) throw std::runtime_error("cannot write '" + path + "'");
+    if (!file) throw writeError(path);
     file.precision(9);
     return file;
 }
 
 void close(std::ofstream& file, const std::string& name)
 {
+    flushOrThrow(file, name);
     file.close();
-    if (!file) throw std::runtime_error("cannot write '" + name + "' to its end");
 }
 
 std::ostream& operator<<(std::ostream& out, const Vector3d& v)
@@ -42,6 +42,7 @@ void PathFiles::add(const StampedPose& stamped)
     const Pose& pose = stamped.T_world_imu;
     tum_.write(stamped);
     kitti_ << kittiLine(pose) << '\n';
+    flushOrThrow(kitti_, kitti_path_);
     if (last_) length_ += (pose.p - last_->p).norm();
     last_ = pose;
     sample_.add(pose);
@@ -71,7 +72,9 @@ ResultFiles::ResultFiles(const std::string& folder, bool points)
 void ResultFiles::add(const ScanResult& result)
 {
     writeState(result);
+    flushOrThrow(states_, folder_ + "/states.csv");
     writeTiming(result);
+    flushOrThrow(timing_, folder_ + "/timing.csv");
     if (points_) points_->write({result.estimate.state.t, result.undistorted});
 }
 

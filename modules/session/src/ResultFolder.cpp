@@ -3,6 +3,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "DiskReserve.h"
+#include "taut/files/sameFile.h"
+
 namespace fs = std::filesystem;
 
 namespace taut
@@ -28,6 +31,7 @@ constexpr const char* kResults[] = {
     "config.yaml",
     "rig.yaml",
     "report.html",
+    ".taut-reserve",
     "snapshot_top.png",
     "snapshot_oblique.png",
     "snapshot_follow.png"};
@@ -54,15 +58,11 @@ bool isSubmapFile(const fs::path& path)
 
 void refuseInputs(const fs::path& folder, const std::vector<std::string>& inputs)
 {
-    for (const std::string& input : inputs)
-    {
-        if (input.empty() || !fs::exists(input)) continue;
-        for (const char* name : kResults)
-            if (fs::exists(folder / name) && fs::equivalent(input, folder / name))
-                throw FolderInUse(
-                    "the results would overwrite '" + input +
-                    "', which is read: choose another folder");
-    }
+    for (const char* name : kResults)
+        if (const auto input = sameFile((folder / name).string(), inputs))
+            throw FolderInUse(
+                "the results would overwrite '" + *input +
+                "', which is read: choose another folder");
 }
 
 /** Whether taut's results are in the folder. Before there was a marker, metrics.json told. */
@@ -97,6 +97,8 @@ void prepareResultFolder(
     if (fs::exists(folder) && !fs::is_directory(folder))
         throw std::runtime_error("'" + folder_name + "' is not a folder");
     refuseInputs(folder, inputs);
+    if (DiskReserve::isTaken(folder))
+        throw FolderInUse("another program writes its results to '" + folder_name + "' now");
     for (const char* name : kResults)
     {
         if (!isThere(folder / name)) continue;

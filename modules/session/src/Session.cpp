@@ -6,9 +6,11 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "DiskReserve.h"
 #include "drawViews.h"
 #include "takeOutMovedThings.h"
 #include "taut/core/format.h"
+#include "taut/core/writeError.h"
 #include "taut/graph/G2oFile.h"
 #include "taut/report/writeReport.h"
 #include "taut/session/ResultFolder.h"
@@ -24,10 +26,11 @@ namespace
 {
 void writeText(const fs::path& path, const std::string& text)
 {
+    errno = 0;
     std::ofstream file(path);
     file << text;
-    file.close();
-    if (!file) throw std::runtime_error("cannot write '" + path.string() + "'");
+    if (!file) throw writeError(path.string());
+    flushOrThrow(file, path.string());
 }
 
 double secondsSince(std::chrono::steady_clock::time_point begin)
@@ -35,9 +38,9 @@ double secondsSince(std::chrono::steady_clock::time_point begin)
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/** Warnings which say that a part of the input was not used. */
-constexpr const char* kUnused[] = {
-    "late_imu", "imu_late", "imu_silent", "lidar_ended", "place_unknown"};
+/** Warnings which say that a part of the input was not used, or not as it is. */
+constexpr const char* kUnused[] = {"late_imu",    "imu_late",      "imu_silent", "imu_not_found",
+                                   "lidar_ended", "place_unknown", "clock_back"};
 }  // namespace
 
 Session::Session(const SessionConfig& config, WarningLog& warnings, EventSink events)
@@ -45,6 +48,7 @@ Session::Session(const SessionConfig& config, WarningLog& warnings, EventSink ev
       warnings_(warnings),
       events_(std::move(events)),
       executor_(config.threads),
+      reserve_(std::make_unique<DiskReserve>(config.folder)),
       map_(std::make_unique<MapExport>(config.method.map_export, config.folder)),
       path_(std::make_unique<PathFiles>(config.folder)),
       files_(config.folder, config.method.odometry.keep_undistorted),
@@ -82,6 +86,14 @@ void Session::add(Measurement measurement)
 void Session::take(const Event& event)
 {
     doubts_.add(event);
+    written_ = false;
+    write(event);
+    written_ = true;
+    if (events_) events_(event);
+}
+
+void Session::write(const Event& event)
+{
     if (const auto* estimated = std::get_if<Estimated>(&event))
     {
         const ScanResult& result = estimated->result;
@@ -106,7 +118,6 @@ void Session::take(const Event& event)
         if (lost != nullptr && lost->cause == "pose_doubtful") mapper_->setDoubt(true);
         if (std::holds_alternative<Recovered>(event)) mapper_->setDoubt(false);
     }
-    if (events_) events_(event);
 }
 
 void Session::takeRefined(const Refined& refined)
@@ -134,63 +145,58 @@ SessionOutcome Session::run(
     reopen_ = std::move(reopen);
     go_on_ = go_on;
     const auto begin = std::chrono::steady_clock::now();
-    const std::string failure = processAll(log, go_on, interrupted);
+    attempt([&] { interrupted = !processAll(log, go_on); });
     wall_seconds_ = secondsSince(begin);
-    SessionOutcome outcome = finish(log.progress(), log.incomplete(), interrupted);
-    if (!failure.empty()) outcome.failure = failure;
-    return outcome;
+    return finish(log.progress(), log.incomplete(), interrupted);
 }
 
-std::string Session::processAll(
-    MeasurementStream& log, const std::function<bool(double)>& go_on, bool& interrupted)
+/** False: it was interrupted. */
+bool Session::processAll(MeasurementStream& log, const std::function<bool(double)>& go_on)
+{
+    while (std::optional<Measurement> m = log.next())
+    {
+        add(std::move(*m));
+        if (!go_on(log.progress().fraction())) return false;
+    }
+    pipeline_.finish();
+    return true;
+}
+
+/** One of the things that are done whatever became of the others. The first error is the cause,
+ * what comes of it is a warning. */
+void Session::attempt(const std::function<void()>& step)
 {
     try
     {
-        while (std::optional<Measurement> m = log.next())
-        {
-            add(std::move(*m));
-            interrupted = !go_on(log.progress().fraction());
-            if (interrupted) return {};
-        }
-        pipeline_.finish();
+        step();
     }
     catch (const std::exception& e)
     {
-        return e.what();
+        if (failure_.empty())
+            failure_ = e.what();
+        else if (failure_ != e.what())
+            warnings_.add({0, "not_saved", e.what()});
     }
-    return {};
 }
 
 SessionOutcome Session::finish(const StreamProgress& log, bool incomplete, bool interrupted)
 {
     SessionOutcome outcome;
-    outcome.interrupted = interrupted;
-    try
-    {
-        pipeline_.finish();
-    }
-    catch (const std::exception& e)
-    {
-        outcome.failure = e.what();
-    }
-    files_.close();
-    path_->close();
-    map_->finish(warnings_.sink());
+    // Where the disk took no more, what the pipeline still holds back has no place either.
+    if (written_) attempt([&] { pipeline_.finish(); });
+    attempt([&] { path_->close(); });
+    attempt([&] { files_.close(); });
+    attempt([&] { map_->finish(warnings_.sink()); });
     if (interrupted) reopen_ = {};
-    try
-    {
-        closeLoops();
-    }
-    catch (const std::exception& e)
-    {
-        outcome.failure = e.what();
-    }
+    attempt([&] { closeLoops(); });
     interrupted |= interrupted_again_;
     outcome.interrupted = interrupted;
     outcome.poses = path_->poses();
     outcome.pictures_failed = config_.pictures && outcome.poses > 0 && !drawPictures();
-    writeMetrics(log, incomplete, interrupted);
+    reserve_->release();
+    attempt([&] { writeMetrics(log, incomplete, interrupted); });
     outcome.report_failed = config_.report && !writePage();
+    outcome.failure = failure_;
     outcome.length = path_->length();
     outcome.duration = metrics_.duration();
     outcome.wall_seconds = wall_seconds_;

@@ -2,9 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <fstream>
-#include <stdexcept>
 
 #include "taut/core/format.h"
+#include "taut/core/writeError.h"
 
 namespace taut
 {
@@ -29,7 +29,6 @@ void writeLoops(const std::string& path, const std::vector<LoopClosure>& loops)
                     e.gap_angle)
              << nameOf(l.verdict) << ",\"" << l.reason << "\"\n";
     }
-    file.close();
-    if (!file) throw std::runtime_error("cannot write '" + path + "'");
+    flushOrThrow(file, path);
 }
 }  // namespace taut

@@ -7,7 +7,8 @@
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 
 #include <algorithm>
-#include <stdexcept>
+
+#include "taut/core/writeError.h"
 
 namespace taut
 {
@@ -57,6 +58,7 @@ void writeSimpleMap(const std::string& path, const Mapper& mapper)
         pose.mean = toMrpt(vertex.T_world_submap);
         map.insert(pose, viewOf(*mapper.submap(vertex.id), most));
     }
-    if (!map.saveToFile(path)) throw std::runtime_error("cannot write '" + path + "'");
+    errno = 0;
+    if (!map.saveToFile(path)) throw writeError(path);
 }
 }  // namespace taut

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "taut/core/writeError.h"
 #include "taut/trajectory/Scores.h"
 #include "taut/trajectory/TrajectoryFile.h"
 
@@ -107,7 +108,7 @@ void refuseTooLittle(
 PointTruthWriter::PointTruthWriter(const std::string& path)
     : path_(path), file_(path, std::ios::binary)
 {
-    if (!file_) throw std::runtime_error("cannot write '" + path + "'");
+    if (!file_) throw writeError(path);
     put(file_, kMagic);
     put(file_, kVersion);
 }
@@ -123,12 +124,13 @@ void PointTruthWriter::write(const UndistortedScan& scan)
     put(file_, static_cast<std::uint32_t>(scan.positions.size()));
     for (const Eigen::Vector3f& p : scan.positions)
         put(file_, std::array<float, 3>{p.x(), p.y(), p.z()});
+    flushOrThrow(file_, path_);
 }
 
 void PointTruthWriter::close()
 {
+    flushOrThrow(file_, path_);
     file_.close();
-    if (!file_) throw std::runtime_error("cannot write '" + path_ + "' to its end");
 }
 
 PointTruthReader::PointTruthReader(const std::string& path)

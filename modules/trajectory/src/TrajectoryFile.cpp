@@ -6,6 +6,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "taut/core/writeError.h"
+
 namespace taut
 {
 namespace
@@ -45,10 +47,12 @@ std::string formatNumber(double value, int decimals)
 }
 
 /** Calls `body` with the words of every line that holds data; names file and line in its errors.
- * `more`: there may be more columns, and commas part them. */
+ * `more`: there may be more columns, and commas part them. A last line that fails and has no end
+ * goes to `cut`, if that is there: its writer was killed. */
 void forLines(
     const std::string& path, std::size_t columns,
-    const std::function<void(const std::vector<std::string>&)>& body, bool more = false)
+    const std::function<void(const std::vector<std::string>&)>& body,
+    const std::function<void(const std::string&)>& cut = {}, bool more = false)
 {
     std::ifstream file(path);
     if (!file) throw std::runtime_error("cannot read '" + path + "'");
@@ -67,7 +71,9 @@ void forLines(
         }
         catch (const std::invalid_argument& e)
         {
-            throw std::runtime_error(path + ":" + std::to_string(number) + ": " + e.what());
+            const std::string error = path + ":" + std::to_string(number) + ": " + e.what();
+            if (!file.eof() || !cut) throw std::runtime_error(error);
+            cut(error);
         }
     }
     if (file.bad()) throw std::runtime_error("error while reading '" + path + "'");
@@ -130,6 +136,13 @@ Trajectory readTum(const std::string& path, const WarningSink& warn)
             append(
                 {parseSeconds(words[0]), {rotationOf(v[3], v[4], v[5], v[6]), {v[0], v[1], v[2]}}},
                 out, path, warn);
+        },
+        [&](const std::string& error)
+        {
+            if (warn)
+                warn(
+                    {out.empty() ? 0 : out.back().t, "cut_line",
+                     error + "; the line has no end and is left out: the writing was cut off"});
         });
     return out;
 }
@@ -149,13 +162,13 @@ Trajectory readEuroc(const std::string& path, const WarningSink& warn)
             const auto v = valuesOf(words);
             append({t, {rotationOf(v[4], v[5], v[6], v[3]), {v[0], v[1], v[2]}}}, out, path, warn);
         },
-        true);
+        {}, true);
     return out;
 }
 
 TumWriter::TumWriter(const std::string& path) : path_(path), file_(path)
 {
-    if (!file_) throw std::runtime_error("cannot write '" + path + "'");
+    if (!file_) throw writeError(path);
     file_ << "# timestamp tx ty tz qx qy qz qw\n";
 }
 
@@ -168,12 +181,13 @@ void TumWriter::write(const StampedPose& pose)
     any_ = true;
     last_ = pose.t;
     file_ << tumLine(pose) << '\n';
+    flushOrThrow(file_, path_);
 }
 
 void TumWriter::close()
 {
+    flushOrThrow(file_, path_);
     file_.close();
-    if (!file_) throw std::runtime_error("cannot write '" + path_ + "' to its end");
 }
 
 void writeTum(const std::string& path, const Trajectory& trajectory)

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <regex>
-#include <stdexcept>
+
+#include "taut/core/Config.h"
 
 namespace taut::bag
 {
@@ -16,7 +17,7 @@ std::regex compile(const std::string& expression, const std::string& option)
     }
     catch (const std::regex_error& e)
     {
-        throw std::runtime_error(
+        throw ConfigError(
             option + " '" + expression + "' is not a regular expression: " + e.what());
     }
 }

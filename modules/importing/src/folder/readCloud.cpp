@@ -18,6 +18,8 @@ namespace taut
 namespace
 {
 constexpr double kWorstBadShare = 0.05;  // of the points of a scan
+constexpr double kLatest = 4e18;  // [ns], the year 2096: sums and differences do not overflow
+constexpr double kMostRings = 65536;
 
 /** Any of the three kinds of file. */
 struct Table
@@ -119,6 +121,12 @@ Columns columnsOf(const Table& table)
     throw std::runtime_error("lacks a column x, y or z; it has" + found);
 }
 
+/** 0 for what cannot be the number of a ring. */
+int ringOf(double value)
+{
+    return value > 0 && value < kMostRings ? static_cast<int>(value) : 0;
+}
+
 /** `times`: in the file's unit, one a point; empty if it has none. */
 Scan build(
     const Columns& columns, const std::vector<std::vector<double>>& rows,
@@ -141,7 +149,7 @@ Scan build(
         builder.add(
             position.cast<float>(),
             columns.intensity < 0 ? 0.0f : static_cast<float>(row[columns.intensity]), timeOf(i),
-            columns.ring < 0 ? 0 : static_cast<int>(row[columns.ring]));
+            columns.ring < 0 ? 0 : ringOf(row[columns.ring]));
     }
     const std::size_t bad = builder.notFinite() + builder.badTime();
     if (static_cast<double>(bad) > kWorstBadShare * static_cast<double>(builder.seen()))
@@ -168,7 +176,7 @@ Scan read(const std::filesystem::path& file)
         rows.push_back(row);
         if (columns.time.column < 0) continue;
         times.push_back(row[columns.time.column]);
-        if (!std::isfinite(times.back()) || std::abs(times.back() * columns.time.unit) > 9e18)
+        if (!std::isfinite(times.back()) || std::abs(times.back() * columns.time.unit) > kLatest)
             throw std::runtime_error("has a time that is none");
     }
     if (!columns.time.relative) checkPrecision(times, columns.time.unit);
@@ -181,8 +189,12 @@ std::optional<Time> stampOfName(const std::filesystem::path& file)
     const std::string name = file.stem().string();
     try
     {
-        if (name.find('.') != std::string::npos) return parseSeconds(name);
-        if (name.size() >= 16) return parseSeconds(name + "e-9");
+        std::optional<Time> stamp;
+        if (name.find('.') != std::string::npos)
+            stamp = parseSeconds(name);
+        else if (name.size() >= 16)
+            stamp = parseSeconds(name + "e-9");
+        if (stamp && std::abs(static_cast<double>(*stamp)) <= kLatest) return stamp;
     }
     catch (const std::invalid_argument&)
     {

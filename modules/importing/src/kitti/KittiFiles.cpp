@@ -34,6 +34,8 @@ std::vector<std::string> linesOf(const fs::path& file)
     return lines;
 }
 
+constexpr int kLastYear = 2200;  // nanoseconds end in 2262
+
 Time parseDate(const std::string& text)
 {
     std::tm date{};
@@ -41,7 +43,7 @@ Time parseDate(const std::string& text)
     if (std::sscanf(
             text.c_str(), "%d-%d-%d %d:%d:%n", &date.tm_year, &date.tm_mon, &date.tm_mday,
             &date.tm_hour, &date.tm_min, &read) != 5 ||
-        read == 0)
+        read == 0 || date.tm_year < 1970 || date.tm_year > kLastYear)
         throw std::invalid_argument("'" + text + "' is no date and time");
     date.tm_year -= 1900;
     date.tm_mon -= 1;

@@ -14,7 +14,8 @@ namespace taut::ouster
 namespace
 {
 constexpr double kDegree = M_PI / 180;
-constexpr Duration kLongestFrame = 2'000'000'000;  // offsets fit 32 bits
+constexpr Duration kLongestFrame = 2'000'000'000;    // offsets fit 32 bits
+constexpr Time kLatest = 4'000'000'000'000'000'000;  // the year 2096: differences do not overflow
 constexpr double kPaceTolerance = 0.25;
 constexpr int kWrongPaces = 32;  // in a row: a clock that is set once is no other lidar mode
 
@@ -46,6 +47,8 @@ ImuSample decodeImu(const std::uint8_t* packet)
     constexpr std::size_t kGyroTimeAt = 16, kAccelAt = 24, kGyroAt = 36;
     ImuSample sample;
     sample.t = readLittle<std::int64_t>(packet + kGyroTimeAt);
+    if (sample.t < 0 || sample.t > kLatest)
+        throw std::runtime_error("an IMU packet has an impossible time");
     for (int i = 0; i < 3; i++)
     {
         const auto axis = static_cast<std::size_t>(i) * sizeof(float);
@@ -109,6 +112,7 @@ void FrameAssembler::addColumn(const std::uint8_t* column)
 {
     const auto t = readLittle<std::int64_t>(column + kColumnTimeAt);
     const int measurement = readLittle<std::uint16_t>(column + kMeasurementAt);
+    if (t < 0 || t > kLatest) throw std::runtime_error("a column has an impossible time");
     checkPace(measurement, t);
     Scan& scan = frame_.scan;
     if (frame_.columns == 0) scan.stamp = scan.end = t;

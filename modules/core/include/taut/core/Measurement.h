@@ -25,7 +25,7 @@ struct StreamProgress
     std::size_t skipped = 0;   //!< observations of the chosen sensors that could not be used
     std::uint64_t points = 0;  //!< in the scans of the chosen LiDAR, dropped ones too
     std::uint64_t points_not_finite = 0;  //!< of these: a coordinate is NaN or infinite
-    std::uint64_t points_bad_time = 0;    //!< of these: 2 s or more away from their scan's stamp
+    std::uint64_t points_bad_time = 0;    //!< of these: cannot be in their sweep
     bool has_imu = false;                 //!< an IMU was found, at the latest 2 s into the log
     std::string lidar_label, imu_label;   //!< as chosen; empty before the first of them
     /** Observations by label and MRPT class, of all sensors, used or not. The label of one that is

@@ -82,8 +82,7 @@ struct PlyPoint
 std::vector<PlyPoint> readPlyPoints(const std::string& path);
 
 /** Writes points (x, y, z, intensity as floats) to a binary PLY file as they come: the cloud may be
- * larger than memory. The header states the number of points from close() on; a file that was
- * never closed is refused by PlyReader. */
+ * larger than memory. After each flush() the file is whole: its header states the points in it. */
 class PlyPointWriter
 {
  public:
@@ -101,15 +100,19 @@ class PlyPointWriter
     /** Number of points so far. */
     std::size_t size() const { return size_; }
 
-    /** Writes what is left and the number of points. Throws std::runtime_error when writing fails.
-     */
+    /** Writes what is held back and the number of points. Throws std::runtime_error, with the
+     * cause, when writing fails; the file is closed then, as the flush before left it. */
+    void flush();
+
+    /** As flush(); nothing can be added any more. */
     void close();
 
  private:
-    void checkStream();
+    [[noreturn]] void fail();
 
     std::string path_;
     std::ofstream out_;
-    std::size_t size_ = 0;
+    std::string rows_;                  //!< not yet in the file
+    std::size_t size_ = 0, whole_ = 0;  //!< whole_: at the last flush
 };
 }  // namespace taut

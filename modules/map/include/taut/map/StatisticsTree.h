@@ -85,8 +85,10 @@ class StatisticsNode : public octomap::OcTreeDataNode<PointStatistics>
     }
     void prefetchChildren() const
     {
+        // As a number: where there are no children, a pointer could not be moved.
+        const auto first = reinterpret_cast<std::uintptr_t>(children);
         __builtin_prefetch(children);
-        __builtin_prefetch(children + 7);
+        __builtin_prefetch(reinterpret_cast<const char*>(first + 7 * sizeof(*children)));
     }
 
     PointStatistics& statistics() { return value; }

@@ -29,6 +29,10 @@ struct ImuRig
     double accel_scale = 1;  //!< factor to m/s^2: 9.80665 for values in g
     double gyro_scale = 1;   //!< factor to rad/s: 0.0174532925 for values in deg/s
     std::optional<ImuNoise> noise;
+    /** Beyond its range a sample is an error of the transfer, and left out: 200 g and 20,000 deg/s
+     * are the largest ranges of MEMS sensors (ADXL375, ADXRS649). */
+    double max_accel = 200 * 9.80665;          //!< [m/s^2], after the scale
+    double max_rate = 20'000 * 0.01745329252;  //!< [rad/s], after the scale
 };
 
 /** A sensor set: what the log does not say, or says wrongly. A part whose label does not match the

@@ -20,9 +20,9 @@ void removeLoopResults(const std::string& folder);
  * tells that its results are taut's.
  *
  * Throws FolderInUse if a file that taut did not write has the name of a result, if there are
- * results and `overwrite` is false, and if one of `inputs` (files that the run reads; empty names
- * are none) would be overwritten. Throws std::runtime_error if the folder is a file or cannot be
- * made. Symbolic links are removed, never followed. */
+ * results and `overwrite` is false, if another program is writing to it, and if one of `inputs`
+ * (files that the run reads; empty names are none) would be overwritten. Throws std::runtime_error
+ * if the folder is a file or cannot be made. Symbolic links are removed, never followed. */
 void prepareResultFolder(
     const std::string& folder, bool overwrite, const std::vector<std::string>& inputs);
 }  // namespace taut

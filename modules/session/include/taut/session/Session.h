@@ -16,6 +16,8 @@
 
 namespace taut
 {
+class DiskReserve;
+
 struct SessionConfig
 {
     Method method;
@@ -30,7 +32,7 @@ struct SessionConfig
     Trajectory truth;    //!< that it is to compare the run with; empty: none
 };
 
-/** How a session ended. Poses, map and metrics are on the disk in any case. */
+/** How a session ended. What was computed is on the disk in any case, as far as it takes it. */
 struct SessionOutcome
 {
     int poses = 0;
@@ -46,7 +48,7 @@ struct SessionOutcome
     /** A part of the input was not used, or a stretch of the pose is in doubt: metrics.json tells
      * which. */
     bool partly = false;
-    std::string failure;  //!< what ended the estimation early; empty: nothing did
+    std::string failure;  //!< what ended the estimation or the saving first; empty: nothing did
 };
 
 /** One run from measurements to a folder of results: trajectory, states, map, occupancy octree,
@@ -72,7 +74,8 @@ class Session
     /** Throws what the estimation or the writing throws; finish() can still be called. */
     void add(Measurement measurement);
 
-    /** Completes all files. `log` and `incomplete` tell what was read. */
+    /** Completes all files, the trajectory first; one that fails (SessionOutcome::failure, else the
+     * warning not_saved) keeps none of the others. `log` and `incomplete` tell what was read. */
     SessionOutcome finish(const StreamProgress& log, bool incomplete, bool interrupted = false);
 
     /** Opens the stream of a run once more, from its begin. */
@@ -92,14 +95,15 @@ class Session
 
  private:
     void take(const Event& event);
+    void write(const Event& event);
     void takeRefined(const Refined& refined);
     void closeLoops();
     bool streamAgain(const std::vector<SweepRecord>& records, MapExport& map);
     void takeCorrectedPath();
     void takeOutMovedThings();
     void rewriteAlong(const std::vector<StampedPose>& path);
-    std::string processAll(
-        MeasurementStream& log, const std::function<bool(double)>& go_on, bool& interrupted);
+    bool processAll(MeasurementStream& log, const std::function<bool(double)>& go_on);
+    void attempt(const std::function<void()>& step);
     bool drawPictures() const;
     bool writePage() const;
     std::vector<std::string> caption() const;
@@ -110,6 +114,7 @@ class Session
     WarningLog& warnings_;
     EventSink events_;
     Executor executor_;
+    std::unique_ptr<DiskReserve> reserve_;  // for metrics.json
     std::unique_ptr<MapExport> map_;
     std::unique_ptr<PathFiles> path_;
     ResultFiles files_;
@@ -125,5 +130,7 @@ class Session
     std::size_t moved_points_ = 0;
     Pipeline pipeline_;
     double wall_seconds_ = 0;
+    std::string failure_;  // the first; empty: there was none
+    bool written_ = true;  // what the last event told
 };
 }  // namespace taut

@@ -21,7 +21,8 @@ namespace taut
 std::string tumLine(const StampedPose& pose);
 
 /** Reads a whole TUM file. A repeated stamp is dropped, with a warning (kind "repeated_stamp"): the
- * first pose counts. */
+ * first pose counts. A malformed last line without an end is left out, with a warning ("cut_line"):
+ * the program that wrote it was killed. */
 Trajectory readTum(const std::string& path, const WarningSink& warn = {});
 
 /** Reads a trajectory as the EuRoC data sets have their truth
@@ -29,9 +30,10 @@ Trajectory readTum(const std::string& path, const WarningSink& warn = {});
  * are left alone. Throws and warns as readTum(). */
 Trajectory readEuroc(const std::string& path, const WarningSink& warn = {});
 
-/** Writes a TUM file pose by pose, so that a long run needs no memory for it. Throws
+/** Writes a TUM file pose by pose, so that a long run needs no memory for it; each pose is in the
+ * file when write() returns, whatever becomes of the program. Throws
  * std::runtime_error if the file cannot be written, std::invalid_argument if time does not
- * increase. Call close() to learn of a full disk: the destructor cannot tell. */
+ * increase. */
 class TumWriter
 {
  public:

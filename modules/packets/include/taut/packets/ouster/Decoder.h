@@ -31,7 +31,8 @@ struct DescriptionError : std::runtime_error
 /** Size of a lidar packet of that sensor. */
 std::size_t lidarPacketBytes(const SensorInfo& info);
 
-/** An IMU packet of kImuPacketBytes in SI units; its time is that of the gyroscope's reading. */
+/** An IMU packet of kImuPacketBytes in SI units; its time is that of the gyroscope's reading.
+ * Throws std::runtime_error if that is none. */
 ImuSample decodeImu(const std::uint8_t* packet);
 
 /** One turn of the sensor. */
