@@ -1,5 +1,5 @@
 /** taut-simulate: writes a rawlog with its truth from a scenario.
- * Exit codes: 0 done, 1 failed, 2 bad usage. */
+ * Exit codes: 0 done, 1 failed, 2 bad usage, 3 interrupted: what was done is saved. */
 #include <fstream>
 #include <iostream>
 #include <optional>
@@ -7,6 +7,7 @@
 
 #include "../CommandLine.h"
 #include "../Progress.h"
+#include "../Signals.h"
 #include "../guardOutput.h"
 #include "Recorder.h"
 #include "taut/rawlog/RawlogSource.h"
@@ -95,7 +96,8 @@ void guardOutputs(const Options& options, const taut::simulation::Scenario& scen
     if (options.recorder.points) taut::guardOutput(files.points, inputs, begins("TAUTPNTS"));
 }
 
-void run(const Options& options)
+/** The exit code. */
+int run(const Options& options)
 {
     auto section = taut::simulation::loadScenarioFile(options.scenario, options.settings);
     const taut::simulation::Scenario scenario = taut::simulation::readScenario(section);
@@ -112,7 +114,7 @@ void run(const Options& options)
     {
         taut::Progress progress(!options.quiet);
         const int sweeps = simulator.sweeps();
-        for (int k = 0; k < sweeps; k++)
+        for (int k = 0; k < sweeps && !taut::interruption(); k++)
         {
             recorder.add(k, simulator.sweep(k, executor));
             const double done = (k + 1.0) / sweeps;
@@ -122,6 +124,9 @@ void run(const Options& options)
     recorder.close();
     if (!options.quiet)
         std::cerr << recorder.points() << " points, " << recorder.samples() << " IMU samples\n";
+    if (!taut::interruption()) return 0;
+    std::cerr << "interrupted: what was done is saved\n";
+    return 3;
 }
 }  // namespace
 
@@ -129,11 +134,14 @@ int main(int argc, char** argv)
 {
     return taut::runProgram(
         "taut-simulate",
-        [&]
+        [&]() -> int
         {
             try
             {
-                if (const auto options = parse(argc, argv)) run(*options);
+                const auto options = parse(argc, argv);
+                if (!options) return 0;
+                taut::catchSignals();
+                return run(*options);
             }
             catch (const taut::ConfigError& e)
             {

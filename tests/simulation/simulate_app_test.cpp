@@ -1,5 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -232,6 +235,33 @@ TEST_F(SimulateApp, NeverOverwritesWhatItReads)
     const std::string scenario = contentOf(file("scenario.yaml"));
     EXPECT_EQ(run("-c " + file("scenario.yaml") + " -o " + file("link.rawlog")).exit_code, 2);
     EXPECT_EQ(contentOf(file("scenario.yaml")), scenario);
+}
+
+TEST_F(SimulateApp, SavesWhatWasDoneWhenInterrupted)
+{
+    const std::string log = file("log.rawlog");
+    const pid_t child = fork();
+    if (child == 0)
+    {
+        execl(
+            TAUT_SIMULATE, TAUT_SIMULATE, "-q", "-c", TAUT_SCENARIOS "/hall_violent.yaml", "-o",
+            log.c_str(), "--duration", "600", nullptr);
+        _exit(127);
+    }
+    for (int i = 0; i < 2000; i++)  // until sweeps are written
+    {
+        const bool begun = std::filesystem::exists(log + ".part") &&
+                           std::filesystem::file_size(log + ".part") > 100'000;
+        if (begun) break;
+        usleep(10'000);
+    }
+    kill(child, SIGTERM);
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 3);
+    EXPECT_GT(read(log).scans.size(), 0U);
+    EXPECT_FALSE(std::filesystem::exists(log + ".part"));
 }
 
 TEST_F(SimulateApp, SaysWhatIsWrong)
