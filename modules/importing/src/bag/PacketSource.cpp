@@ -241,7 +241,7 @@ std::unique_ptr<ImportSource> openPackets(
         return source;
     }
     decoders.push_back(makeHesaiDecoder(path, options.hesai_csv, clock));
-    decoders.push_back(makeVelodyneDecoder(clock));
+    decoders.push_back(makeVelodyneDecoder(clock, false));
     source->decodeBy(std::move(decoders));
     return source;
 }
