@@ -178,11 +178,7 @@ class PacketSource : public ImportSource
                 {
                     if (w.kind != "no_imu") report(w.t, w.kind.c_str(), w.text);
                 });
-        const bool read = readings_ > 0 || std::any_of(
-                                               items_.begin(), items_.end(),
-                                               [](const auto& item)
-                                               { return std::holds_alternative<ImuSample>(item); });
-        if (!read)
+        if (readings_ == 0)
             report(
                 0, "no_imu",
                 path_ + ": " +
