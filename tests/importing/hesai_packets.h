@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -94,6 +96,11 @@ inline const std::vector<HesaiFormat> kHesaiFormats{
      13,
      19,
      1900}};
+
+inline void PrintTo(const HesaiFormat& format, std::ostream* out)
+{
+    *out << hesai::nameOf(format.model);
+}
 
 inline const HesaiFormat& formatOf(hesai::Model model)
 {

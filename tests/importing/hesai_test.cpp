@@ -96,7 +96,7 @@ TEST_P(AHesai, PacketOfAnotherLengthIsRefused)
     HesaiPacket packet(GetParam().model);
     for (const std::size_t size :
          {std::size_t{0}, std::size_t{1}, std::size_t{11}, packet.tailAt() + 21,
-          GetParam().size + 5, std::size_t{1500}})
+          GetParam().size - 1, GetParam().size + 8, std::size_t{1500}})
     {
         std::vector<std::uint8_t> bytes = packet.bytes;
         bytes.resize(size);

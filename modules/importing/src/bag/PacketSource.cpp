@@ -178,11 +178,7 @@ class PacketSource : public ImportSource
                 {
                     if (w.kind != "no_imu") report(w.t, w.kind.c_str(), w.text);
                 });
-        const bool read = readings_ > 0 || std::any_of(
-                                               items_.begin(), items_.end(),
-                                               [](const auto& item)
-                                               { return std::holds_alternative<ImuSample>(item); });
-        if (!read)
+        if (readings_ == 0)
             report(
                 0, "no_imu",
                 path_ + ": " +
@@ -241,7 +237,7 @@ std::unique_ptr<ImportSource> openPackets(
         return source;
     }
     decoders.push_back(makeHesaiDecoder(path, options.hesai_csv, clock));
-    decoders.push_back(makeVelodyneDecoder(clock));
+    decoders.push_back(makeVelodyneDecoder(clock, false));
     source->decodeBy(std::move(decoders));
     return source;
 }

@@ -40,7 +40,7 @@ class HesaiDecoder : public PacketDecoder
         const auto* packet = datagram.payload.data();
         const std::size_t bytes = datagram.payload.size();
         const hesai::PacketInfo info = hesai::packetInfo(packet, bytes);
-        if (packets_ == 0)
+        if (packets_ == 0 && (!frames_ || info.model != info_.model))
         {
             info_ = info;
             angles_ = findHesaiAngles(recording_, correction_, info.model);

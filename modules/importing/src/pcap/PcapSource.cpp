@@ -24,7 +24,7 @@ class PcapSource : public ImportSource
         : path_(recording.path.string()), reader_(path_), warn_(std::move(warn))
     {
         const StampClock clock = options.capture_clock ? StampClock::Capture : StampClock::Sensor;
-        addSensor(makeVelodyneDecoder(clock));
+        addSensor(makeVelodyneDecoder(clock, true));
         if (const auto info = findDescription(recording.path, options))
             addSensor(makeOusterDecoder(*info, clock));
         addSensor(makeHesaiDecoder(path_, options.hesai_csv, clock));

@@ -51,8 +51,8 @@ std::string nameOf(velodyne::ReturnMode mode)
     return "dual return";
 }
 
-/** Models whose packets other readers of rawlogs do not know become points. */
-bool isKeptAsPackets(velodyne::Model model)
+/** True if other readers of rawlogs know such packets. */
+bool isKnownToOthers(velodyne::Model model)
 {
     return model == velodyne::Model::Vlp16 || model == velodyne::Model::Hdl32;
 }
@@ -60,7 +60,10 @@ bool isKeptAsPackets(velodyne::Model model)
 class VelodyneDecoder : public PacketDecoder
 {
  public:
-    explicit VelodyneDecoder(StampClock clock) : stamps_(clock) {}
+    VelodyneDecoder(StampClock clock, bool keep_packets)
+        : keep_packets_(keep_packets), stamps_(clock)
+    {
+    }
 
     std::string make() const override { return "Velodyne"; }
 
@@ -123,7 +126,7 @@ class VelodyneDecoder : public PacketDecoder
         clock_ahead_ = first_ - captured;
         stamps_.decide(first_, captured);
         frames_.reset();
-        if (!isKeptAsPackets(info.model))
+        if (!keep_packets_ || !isKnownToOthers(info.model))
             frames_.emplace(info.model, velodyne::defaultCalibration(info.model));
     }
 
@@ -152,9 +155,10 @@ class VelodyneDecoder : public PacketDecoder
         return std::move(sweep.scan);
     }
 
+    bool keep_packets_;
     SweepStamps stamps_;
     VelodyneSweeps sweeps_;
-    std::optional<velodyne::FrameAssembler> frames_;  // of a model that becomes points
+    std::optional<velodyne::FrameAssembler> frames_;  // that become points
     std::vector<Scan> complete_;
     std::size_t packets_ = 0;
     velodyne::PacketInfo info_;
@@ -163,8 +167,8 @@ class VelodyneDecoder : public PacketDecoder
 };
 }  // namespace
 
-std::unique_ptr<PacketDecoder> makeVelodyneDecoder(StampClock clock)
+std::unique_ptr<PacketDecoder> makeVelodyneDecoder(StampClock clock, bool keep_packets)
 {
-    return std::make_unique<VelodyneDecoder>(clock);
+    return std::make_unique<VelodyneDecoder>(clock, keep_packets);
 }
 }  // namespace taut

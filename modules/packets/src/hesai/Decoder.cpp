@@ -135,11 +135,12 @@ PacketInfo packetInfo(const std::uint8_t* packet, std::size_t bytes)
     const auto model = modelOf(packet, bytes);
     if (!model) refuse(packet, bytes);
     const PacketLayout layout = layoutOf(*model);
-    const std::size_t tail_at = tailAt(packet, *model);
-    if (bytes < tail_at + layout.tail || bytes > tail_at + layout.tail + layout.optional)
+    const std::size_t tail_at = tailAt(packet, *model), end = tail_at + layout.tail;
+    // A number of the packet, a checksum and a signature may follow.
+    if (bytes < end || bytes > end + layout.optional || (bytes - end) % 4 != 0)
         throw std::runtime_error(
             "a packet of a " + nameOf(*model) + " has " + std::to_string(bytes) +
-            " bytes instead of " + std::to_string(tail_at + layout.tail + layout.optional));
+            " bytes instead of " + std::to_string(end + layout.optional));
     const std::uint8_t* tail = packet + tail_at;
     PacketInfo info;
     info.model = *model;

@@ -47,7 +47,9 @@ class PacketDecoder
     virtual std::vector<std::string> findings() const = 0;
 };
 
-std::unique_ptr<PacketDecoder> makeVelodyneDecoder(StampClock clock);
+/** With `keep_packets` the sweeps of a VLP-16 and an HDL-32E are given as packets, which other
+ * readers of rawlogs know; a sweep begins with a whole packet then. */
+std::unique_ptr<PacketDecoder> makeVelodyneDecoder(StampClock clock, bool keep_packets);
 std::unique_ptr<PacketDecoder> makeOusterDecoder(const ouster::SensorInfo& info, StampClock clock);
 
 /** Angles of the lasers are those of the file `correction`; if that is empty, of one beside the

@@ -50,8 +50,8 @@ struct Return
 };
 
 /** Appends the valid returns of a packet; gives its info. Those nearer than the data sheet's
- * shortest range come from within the sensor and are left out. Of returns of one firing that are less
- * than 10 cm apart, which no sensor separates, the last in the packet is taken. Throws as
+ * shortest range come from within the sensor and are left out. Of returns of one firing that are
+ * less than 10 cm apart, which no sensor separates, the last in the packet is taken. Throws as
  * packetInfo(), and on a calibration of another number of lasers or a block without its flag. */
 PacketInfo decodePacket(
     const std::uint8_t* packet, std::size_t bytes, const Calibration& calibration,
