@@ -143,6 +143,7 @@ class Reader
 
     Report read()
     {
+        requireFile("trajectory.tum");
         path_ = readTum((folder_ / "trajectory.tum").string());
         readPath();
         use("metrics.json", [this] { readMetrics(); });
@@ -160,6 +161,13 @@ class Reader
     }
 
  private:
+    /** A device or a pipe may never end. */
+    void requireFile(const char* name) const
+    {
+        if (fs::exists(folder_ / name) && !fs::is_regular_file(folder_ / name))
+            throw std::runtime_error("'" + (folder_ / name).string() + "' is no file");
+    }
+
     /** Reads a result if it is there; what is wrong with it is a warning. */
     template <class Function>
     void use(const char* name, Function&& function)
@@ -167,6 +175,7 @@ class Reader
         if (!fs::exists(folder_ / name)) return;
         try
         {
+            requireFile(name);
             function();
         }
         catch (const std::exception& e)

@@ -35,7 +35,7 @@ std::uint64_t voxelKey(const Eigen::Matrix<Scalar, 3, 1>& point, Scalar inverse_
         auto cell =
             static_cast<std::int32_t>(scaled);  // towards zero; std::floor is 4 times slower
         cell -= scaled < static_cast<Scalar>(cell);
-        return static_cast<std::uint64_t>(cell + (1 << 20));
+        return static_cast<std::uint64_t>(std::int64_t{cell} + (1 << 20));
     };
     return packVoxel(number(0), number(1), number(2));
 }
