@@ -11,6 +11,7 @@
 #include <numeric>
 #include <optional>
 #include <sstream>
+#include <thread>
 
 namespace taut
 {
@@ -256,6 +257,12 @@ bool parseCommandLine(TCLAP::CmdLine& cmd, int argc, char** argv, const Usage& u
     const std::unique_ptr<TCLAP::CmdLineOutput> replaced(cmd.getOutput());  // TCLAP would leak it
     cmd.setOutput(&output);
     return cmd.parse(argc, argv) || output.complete();
+}
+
+int threadsOf(int asked)
+{
+    if (asked < 0 || asked > 256) throw UsageError("--threads must be 0 to 256");
+    return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 void guardStandardStreams()

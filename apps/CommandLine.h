@@ -30,6 +30,9 @@ struct Usage
  * UsageError that names what is missing or wrong, and the nearest option to one that is unknown. */
 bool parseCommandLine(TCLAP::CmdLine& cmd, int argc, char** argv, const Usage& usage = {});
 
+/** The number of threads that --threads asks for: 0 is all processors. Throws UsageError. */
+int threadsOf(int asked);
+
 /** Makes the standard streams safe to write to: descriptors that are closed are opened to
  * /dev/null, else the first file that is opened would get what is meant for them. A reader who has
  * gone away and a file that reaches its limit make writing fail instead of ending the program

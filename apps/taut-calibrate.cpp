@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <thread>
 
 #include "LogArguments.h"
 #include "Progress.h"
@@ -13,6 +12,8 @@
 #include "methodFile.h"
 #include "taut/calibration/BeamCalibrator.h"
 #include "taut/core/ImuUnits.h"
+#include "taut/core/TimeText.h"
+#include "taut/core/WarningLog.h"
 #include "taut/core/format.h"
 #include "taut/odometry/Pipeline.h"
 #include "taut/rawlog/PrefetchedRawlog.h"
@@ -74,12 +75,10 @@ std::optional<Options> parse(int argc, char** argv)
     o.config = config.getValue();
     o.settings = set.getValue();
     o.passes = passes.getValue();
-    o.threads = threads.getValue();
+    o.threads = taut::threadsOf(threads.getValue());
     o.overwrite = overwrite.getValue();
     o.quiet = quiet.getValue();
     if (o.passes < 1 || o.passes > 20) throw taut::UsageError("--passes must be 1 to 20");
-    if (o.threads < 0 || o.threads > 256) throw taut::UsageError("--threads must be 0 to 256");
-    if (o.threads == 0) o.threads = static_cast<int>(std::thread::hardware_concurrency());
     if (std::filesystem::exists(o.output) && !o.overwrite)
         throw taut::UsageError("'" + o.output + "' is there already; -w overwrites it");
     return o;
@@ -94,10 +93,10 @@ struct Pass
 /** Runs the odometry once, and finds what is left of the beams' errors. */
 Pass calibrateOnce(
     const Options& o, const taut::OdometryConfig& odometry, taut::Executor& executor,
-    taut::Progress& progress)
+    taut::Progress& progress, const taut::WarningSink& warn)
 {
     std::optional<taut::BeamCalibrator> calibrator;
-    taut::PrefetchedRawlog log(o.log);
+    taut::PrefetchedRawlog log(o.log, warn);
     int scans = 0;
     const auto take = [&](const taut::Event& event)
     {
@@ -111,7 +110,7 @@ Pass calibrateOnce(
         calibrator->add(refined->sweep, refined->state);
         scans++;
     };
-    taut::Pipeline pipeline(odometry, executor, taut::WarningSink(), take);
+    taut::Pipeline pipeline(odometry, executor, warn, take);
     taut::Time first = 0, now = 0;
     while (auto measurement = log.next())
     {
@@ -186,10 +185,21 @@ void run(Options o)
     const taut::Method method = taut::Method::read(root, o.log.rig.imu.noise);
     taut::Executor executor(o.threads);
     taut::Progress progress(!o.quiet);
+    taut::WarningLog warnings(
+        [&](const taut::Warning& w)
+        {
+            progress.clear();
+            if (!o.quiet)
+                std::fprintf(
+                    stderr, "warning [%s] at %s s: %s\n", w.kind.c_str(),
+                    taut::formatSeconds(w.t).c_str(), w.text.c_str());
+        });
     Pass pass;
     for (int i = 0; i < o.passes; i++)
     {
-        pass = calibrateOnce(o, method.odometry, executor, progress);
+        // All passes read the same: the first tells what is wrong.
+        pass = calibrateOnce(
+            o, method.odometry, executor, progress, i == 0 ? warnings.sink() : taut::WarningSink());
         taut::BeamCorrections& beams = o.log.rig.lidar.beams;
         beams = {};
         for (const taut::CalibratedBeam& b : pass.beams)

@@ -2,7 +2,6 @@
  * Exit codes: 0 nothing found, 1 failed, 2 bad usage, 3 findings. */
 #include <iostream>
 #include <optional>
-#include <thread>
 
 #include "LogArguments.h"
 #include "Progress.h"
@@ -57,13 +56,10 @@ std::optional<Options> parse(int argc, char** argv)
     log.to_time = part.toTime();
     if (!(window.getValue() >= 3 && window.getValue() <= 600))
         throw taut::UsageError("--window must be 3 to 600 s");
-    if (threads.getValue() < 0 || threads.getValue() > 256)
-        throw taut::UsageError("--threads must be 0 to 256");
     if (!part.rig().empty()) log.rig = taut::loadRig(part.rig());
     o.inspection.window = window.getValue();
     o.inspection.match_scans = !no_matching.getValue();
-    o.threads = threads.getValue() > 0 ? threads.getValue()
-                                       : static_cast<int>(std::thread::hardware_concurrency());
+    o.threads = taut::threadsOf(threads.getValue());
     o.json = json.getValue();
     o.quiet = quiet.getValue();
     return o;

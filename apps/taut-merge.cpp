@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <thread>
 
 #include "CommandLine.h"
 #include "methodFile.h"
@@ -67,13 +66,9 @@ bool parse(int argc, char** argv, Options& o)
     o.merge.folders = folders.getValue();
     o.merge.folder = output.getValue();
     o.merge.pictures = !pictures.getValue();
-    o.merge.threads = threads.getValue();
+    o.merge.threads = taut::threadsOf(threads.getValue());
     o.overwrite = overwrite.getValue();
     o.quiet = quiet.getValue();
-    if (o.merge.threads < 0 || o.merge.threads > 256)
-        throw taut::UsageError("--threads must be 0 to 256");
-    if (o.merge.threads == 0)
-        o.merge.threads = static_cast<int>(std::thread::hardware_concurrency());
     checkFolders(o);
     taut::ConfigSection root =
         taut::readMethodFile(taut::findMethodFile(config.getValue()), set.getValue());

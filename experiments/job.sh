@@ -38,7 +38,7 @@ run() { # VARIANT
   result=$(result_of "$1")
   [ -s "$result" ] && return
   # shellcheck disable=SC2046
-  "$bin/taut-slam" -q -w --no-pictures --threads 1 -i "$log" -o "$work/out" "${cheap[@]}" $(options_of "$1") \
+  "$bin/taut-slam" -q -w --no-pictures --no-report --threads 1 -i "$log" -o "$work/out" "${cheap[@]}" $(options_of "$1") \
     "${options[@]}" || [ $? -eq 3 ] || status=failed # 3: done, but part of the log could not be used
   [ -e "$truth.points" ] && points=(--points "$work/out/undistorted.points" --points-truth "$truth.points")
   if [ $status = ok ]; then

@@ -22,18 +22,15 @@ done
 mkdir -p "$out"
 places=${places:-"halls_walk:halls_walk_later blocks_vehicle:blocks_vehicle_later"}
 
-# As in slam.sh: each beam looks 0.1 degrees aside and measures 1.5 cm wrong, all of them 1 cm.
-errors=(--set lidar.beam_error=0.0017 --set lidar.beam_range_error=0.015 --set lidar.range_bias=0.01)
-
 simulate() { # SCENARIO
   [ -s "$out/$1.rawlog" ] ||
-    "$bin/taut-simulate" -q -c "$root/config/scenarios/$1.yaml" -o "$out/$1.rawlog" "${errors[@]}"
+    "$bin/taut-simulate" -q -c "$root/config/scenarios/$1.yaml" -o "$out/$1.rawlog" "${beam_errors[@]}"
 }
 
 start() { # FIRST SECOND FROM: prints "not found", or the error of the last pose [m, degrees]
   local code=0 end
   end=$(awk -v a="$3" -v b="$seconds" 'BEGIN {print a + b}')
-  "$bin/taut-slam" -q -w --no-pictures -i "$out/$2.rawlog" -o "$out/start" -m "$out/$1" --localize \
+  "$bin/taut-slam" -q -w --no-pictures --no-report -i "$out/$2.rawlog" -o "$out/start" -m "$out/$1" --localize \
     --from-time "$3" --to-time "$end" || code=$?
   if [ "$code" -ne 0 ] && grep -q '"place_unknown"' "$out/start/metrics.json"; then
     echo "not found"
@@ -54,7 +51,7 @@ for place in $places; do
   first=${place%:*} second=${place#*:}
   simulate "$first"
   simulate "$second"
-  [ -s "$out/$first/graph.g2o" ] || "$bin/taut-slam" -q -w --no-pictures -i "$out/$first.rawlog" -o "$out/$first" || [ $? -eq 3 ]
+  [ -s "$out/$first/graph.g2o" ] || "$bin/taut-slam" -q -w --no-pictures --no-report -i "$out/$first.rawlog" -o "$out/$first" || [ $? -eq 3 ]
   begin=$(awk '!/^#/ {print $1; exit}' "$out/$second.gt.tum") end=$(awk 'END {print $1}' "$out/$second.gt.tum")
   : >"$out/$second.starts"
   for k in $(seq "$starts"); do

@@ -20,16 +20,14 @@ mkdir -p "$out"
 work=$(mktemp -d "$out/work.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 
-# Each beam looks 0.1 degrees aside and measures 1.5 cm wrong, all of them 1 cm (standard deviations).
-errors=(--set lidar.beam_error=0.0017 --set lidar.beam_range_error=0.015 --set lidar.range_bias=0.01)
 scenarios=${scenarios:-"storeys_walk blocks_vehicle halls_walk field_walk tunnel_vehicle street_vehicle:110 corridor_walk:120 forest_flight:100"}
 
 run() { # SCENARIO SECONDS SEED
   local result=$out/$1-$3.row duration=()
   [ -s "$result" ] && return
   [ -z "$2" ] || duration=(--duration "$2")
-  "$bin/taut-simulate" -q -c "$root/config/scenarios/$1.yaml" -o "$work/log.rawlog" --seed "$3" "${duration[@]}" "${errors[@]}"
-  "$bin/taut-slam" -q -w --no-pictures -i "$work/log.rawlog" -o "$work/out" || [ $? -eq 3 ]
+  "$bin/taut-simulate" -q -c "$root/config/scenarios/$1.yaml" -o "$work/log.rawlog" --seed "$3" "${duration[@]}" "${beam_errors[@]}"
+  "$bin/taut-slam" -q -w --no-pictures --no-report -i "$work/log.rawlog" -o "$work/out" || [ $? -eq 3 ]
   "$bin/taut-evaluate" --truth "$work/log.gt.tum" --estimate "$work/out/trajectory_odometry.tum" >"$work/before"
   "$bin/taut-evaluate" --truth "$work/log.gt.tum" --estimate "$work/out/trajectory.tum" --loops "$work/out" >"$work/after"
   awk -v name="$1" -v seed="$3" '

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <map>
 #include <sstream>
-#include <thread>
 
 #include "../LogArguments.h"
 
@@ -126,7 +125,7 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.to_time = log.toTime();
     o.only_first_n = first.getValue();
     o.plugins = plugins.getValue();
-    o.threads = threads.getValue();
+    o.threads = threadsOf(threads.getValue());
     o.overwrite = overwrite.getValue();
     o.no_pictures = pictures.getValue();
     o.no_report = no_report.getValue();
@@ -136,8 +135,6 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.show_config = show.getValue();
     o.verbosity = quiet.getValue() ? 0 : verbosityOf(level.getValue());
     if (o.only_first_n < 0) throw UsageError("--only-first-n must not be negative");
-    if (o.threads < 0 || o.threads > 256) throw UsageError("--threads must be 0 to 256");
-    if (o.threads == 0) o.threads = static_cast<int>(std::thread::hardware_concurrency());
     return true;
 }
 }  // namespace taut

@@ -158,6 +158,8 @@ const std::vector<Program> kPrograms{
     {"taut-slam", "option -i/--input and option -o/--output are required"},
     {"taut-import", "argument SOURCE and option -o/--output are required"},
     {"taut-info", "argument LOG.rawlog is required"},
+    {"taut-merge", "argument RUN/ and option -o/--output are required"},
+    {"taut-calibrate", "argument LOG.rawlog and option -o/--output are required"},
     {"taut-evaluate", "option --truth and option --estimate are required"},
 #ifdef TAUT_WITH_SIMULATE
     {"taut-simulate", "option -c/--config and option -o/--output are required"},
