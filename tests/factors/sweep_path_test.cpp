@@ -27,9 +27,12 @@ constexpr Undistortion kModes[] = {Undistortion::None,     Undistortion::Rotatio
                                    Undistortion::Imu,      Undistortion::IteratedImu,
                                    Undistortion::Iterated, Undistortion::Bridge};
 
-PreintegratedImu integrate(const SteadyTurn& body, Duration period = 2 * kMillisecond)
+PreintegratedImu integrate(
+    const SteadyTurn& body, Duration period = 2 * kMillisecond, bool hides = false)
 {
-    const ImuSamples samples = body.samples(0, kEnd, period);
+    ImuSamples samples = body.samples(0, kEnd, period);
+    for (ImuSample& s : samples)  // the middle third is at the limit of the gyro
+        s.gyro_hidden = hides && s.t > kEnd / 3 && s.t < 2 * kEnd / 3 ? 2 : 0;
     PreintegrationRequest request;
     request.end = kEnd;
     request.samples = &samples;
@@ -76,7 +79,7 @@ TEST_P(AnyMode, JacobianIsThatOfThePose)
     for (int i = 0; i < 12; i++)
     {
         const SteadyTurn body = violent(random);
-        const PreintegratedImu imu = integrate(body);
+        const PreintegratedImu imu = integrate(body, 2 * kMillisecond, i % 3 == 0);
         const double gap = i < 6 ? 0.02 : 0.6;  // both ends off by so many m, m/s and rad
         const NavState previous = disturbed(body.at(0), random, gap);
         const NavState current = disturbed(body.at(kEnd), random, gap);
@@ -278,6 +281,30 @@ TEST(SweepPath, TheBridgeClosesTheVelocityGapToo)
         EXPECT_LT((velocityAt(path, 0, step) - previous.v_world).norm(), 0.03);
         EXPECT_LT((velocityAt(path, kEnd - step, step) - current.v_world).norm(), 0.03);
         EXPECT_LT((poseAt(path, 0).p - previous.T_world_imu.p).norm(), 1e-10);
+    }
+}
+
+TEST(SweepPath, AGapInRotationIsClosedWhereTheGyroWasAtItsLimit)
+{
+    // As the covariance tells: the most probable path of a noise that is not even.
+    const SteadyTurn body;
+    const PreintegratedImu imu = integrate(body, kMillisecond, true);
+    EXPECT_EQ(imu.gapShare(kEnd, 0), 0);
+    EXPECT_NEAR(imu.gapShare(0, 0), 1, 1e-12);
+    EXPECT_LT(imu.gapShare(2 * kEnd / 3 + kMillisecond, 0), 0.01);
+    EXPECT_NEAR(imu.gapShare(kEnd / 2, 0), 0.5, 0.01);
+    EXPECT_GT(imu.gapShare(kEnd / 3 - kMillisecond, 0), 0.99);
+
+    NavState current = body.at(kEnd);
+    current.T_world_imu.R = current.T_world_imu.R * expSO3({0, 0, 0.1});
+    for (const Undistortion mode : {Undistortion::Iterated, Undistortion::Bridge})
+    {
+        SweepPath path(mode, imu, body.at(0), body.at(kEnd));
+        path.setStates(body.at(0), current);
+        const auto off = [&](Time t)
+        { return logSO3(body.at(t).T_world_imu.R.transpose() * poseAt(path, t).R).norm(); };
+        EXPECT_LT(off(kEnd / 4), 1e-3);
+        EXPECT_NEAR(off(3 * kEnd / 4), 0.1, 1e-3);
     }
 }
 

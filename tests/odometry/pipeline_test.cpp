@@ -165,6 +165,21 @@ TEST(Pipeline, WithoutUndistortionTheErrorIsManyTimesLarger)
     EXPECT_GT(none, 4 * bridge);
 }
 
+TEST(Pipeline, AGyroAtTheEndOfItsRangeIsFollowed)
+{
+    // The body turns by up to 1.5 rad/s.
+    Streams streams = hand();
+    for (ImuSample& s : streams.imu) s.gyro = s.gyro.cwiseMin(0.8).cwiseMax(-0.8);
+    const Outcome unaware = run(streams);
+    const Outcome done = run(streams, "{}\nimu: {gyro_range: 0.8}");
+    EXPECT_LT(done.error(hand().recording), 0.01);
+    EXPECT_LT(done.error(hand().recording), 0.5 * unaware.error(hand().recording));
+    EXPECT_GT(done.log.count("gyro_clipped"), 0u);
+    EXPECT_EQ(done.log.counts().size(), 1u);
+    RecordProperty("ate_mm", std::to_string(1e3 * done.error(hand().recording)));
+    RecordProperty("ate_mm_unaware", std::to_string(1e3 * unaware.error(hand().recording)));
+}
+
 TEST(Pipeline, EstimatesVelocityAndGyroBias)
 {
     const Outcome done = run(hand());

@@ -1,12 +1,16 @@
 #include "taut/core/PreintegratedImu.h"
 
+#include <algorithm>
+
 namespace taut
 {
 ImuSample interpolate(const ImuSample& a, const ImuSample& b, Time t)
 {
     if (a.t == b.t) return a;
     const double s = static_cast<double>(t - a.t) / static_cast<double>(b.t - a.t);
-    return {t, a.gyro + s * (b.gyro - a.gyro), a.accel + s * (b.accel - a.accel)};
+    return {
+        t, a.gyro + s * (b.gyro - a.gyro), a.accel + s * (b.accel - a.accel),
+        std::max(a.gyro_hidden, b.gyro_hidden), std::max(a.accel_hidden, b.accel_hidden)};
 }
 
 Motion stepBackwardValue(
@@ -86,6 +90,18 @@ MotionDelta PreintegratedImu::at(Time t, std::size_t& hint) const
     if (t == knots[i].sample.t) return knots[i].delta;
     const ImuSample at_t = interpolate(knots[i + 1].sample, knots[i].sample, t);
     return stepBackward(knots[i].delta, knots[i].sample, at_t, bias_accel, bias_gyro);
+}
+
+double PreintegratedImu::gapShare(Time t, std::size_t hint) const
+{
+    const double of_time = toSeconds(end() - t) / duration();
+    if (!(knots.back().hidden > 0)) return of_time;
+    const std::size_t i = intervalOf(t, hint);
+    const double within =
+        toSeconds(knots[i].sample.t - t) / toSeconds(knots[i].sample.t - knots[i + 1].sample.t);
+    const double hidden = knots[i].hidden + within * (knots[i + 1].hidden - knots[i].hidden);
+    const double shown = covariance.diagonal().tail<3>().sum() - knots.back().hidden;
+    return (of_time * shown + hidden) / (shown + knots.back().hidden);
 }
 
 MotionDelta PreintegratedImu::at(Time t) const

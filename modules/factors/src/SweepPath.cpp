@@ -82,7 +82,7 @@ void SweepPath::setStates(const NavState& previous, const NavState& current)
         Rt * (previous.v_world - current.v_world - kGravityWorld * duration_) - start_.beta;
 }
 
-SweepPath::Local SweepPath::localAt(Time t, const Motion& motion) const
+SweepPath::Local SweepPath::localAt(Time t, const Motion& motion, std::size_t hint) const
 {
     Local at;
     at.d = toSeconds(imu_.end() - t);
@@ -95,7 +95,8 @@ SweepPath::Local SweepPath::localAt(Time t, const Motion& motion) const
     at.corrected = at.apriori;
     if (mode_ == Undistortion::Iterated || mode_ == Undistortion::Bridge)
     {
-        at.correction = expSO3(at.mu * gap_log_);
+        at.turned = imu_.gapShare(t, hint);
+        at.correction = expSO3(at.turned * gap_log_);
         at.corrected.R = at.correction * at.apriori.R;
     }
     const double mu2 = at.mu * at.mu, mu3 = mu2 * at.mu;
@@ -109,13 +110,14 @@ SweepPath::Local SweepPath::localAt(Time t, const Motion& motion) const
 
 Pose SweepPath::poseAt(Time t, std::size_t& hint) const
 {
-    return current_.T_world_imu * localAt(t, chain_.valueAt(t, hint)).corrected;
+    const Motion motion = chain_.valueAt(t, hint);
+    return current_.T_world_imu * localAt(t, motion, hint).corrected;
 }
 
 Pose SweepPath::poseAt(Time t, std::size_t& hint, PathJacobian& jacobian) const
 {
     const MotionDelta motion = chain_.at(t, hint);
-    const Local at = localAt(t, motion);
+    const Local at = localAt(t, motion, hint);
     jacobian.setZero();
     rotationJacobian(at, motion, jacobian);
     positionJacobian(at, motion, jacobian);
@@ -131,7 +133,8 @@ void SweepPath::rotationJacobian(const Local& at, const MotionDelta& motion, Pat
 
     // R_D <- R_D Exp(d_D) moves the correction by dR_j <- dR_j Exp(e), e = mu Jr(mu phi) Jr^-1(phi)
     // d_D.
-    const Matrix3d spread = motion.gamma.transpose() * at.mu * rightJacobianSO3(at.mu * gap_log_) *
+    const Matrix3d spread = motion.gamma.transpose() * at.turned *
+                            rightJacobianSO3(at.turned * gap_log_) *
                             inverseRightJacobianSO3(gap_log_);
     J.block<3, 3>(kRows, kTheta) -= spread * gap_rotation_.transpose();
     J.block<3, 3>(kRows, kTheta0) = spread * start_.gamma;
@@ -173,8 +176,8 @@ void SweepPath::positionJacobian(const Local& at, const MotionDelta& motion, Pat
     addApriori(mode_ == Undistortion::Iterated ? at.correction : I, at.d, motion);
     if (mode_ == Undistortion::Iterated)
     {
-        const Matrix3d turn = -at.correction * hat(at.apriori.p) * at.mu *
-                              rightJacobianSO3(at.mu * gap_log_) *
+        const Matrix3d turn = -at.correction * hat(at.apriori.p) * at.turned *
+                              rightJacobianSO3(at.turned * gap_log_) *
                               inverseRightJacobianSO3(gap_log_);
         const Matrix3d of_gap = turn + at.mu * gap_rotation_ * hat(apriori_start_.p);
         C.block<3, 3>(0, kTheta) -= of_gap * gap_rotation_.transpose();

@@ -52,6 +52,7 @@ OdometryConfig OdometryConfig::read(ConfigSection& root)
     imu.key("gyro_bias_walk", c.imu_noise.gyro_bias_walk, kPositive, "rad/s^2/sqrt(Hz)");
     imu.key("accel_bias_walk", c.imu_noise.accel_bias_walk, kPositive, "m/s^3/sqrt(Hz)");
     imu.key("noise_from_rest", c.imu_noise_from_rest, "raise the white noise to that seen at rest");
+    c.imu_range.declare(imu);
     imu.key(
         "wait", c.imu_wait, kPositive,
         "s of scans without an IMU sample: then constant velocity takes over");

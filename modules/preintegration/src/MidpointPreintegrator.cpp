@@ -45,6 +45,12 @@ StepNoise noiseOf(
     // density sigma sqrt(sweep); likewise over a gap.
     double gyro2 = request.noise.gyro * request.noise.gyro + gyro_scale * gyro_scale * sweep;
     double accel2 = request.noise.accel * request.noise.accel + accel_scale * accel_scale * sweep;
+    // What a reading at the limit hides is taken as an error of that kind, too.
+    const double gyro_hidden = std::max(later.gyro_hidden, earlier.gyro_hidden) * std::sqrt(sweep);
+    const double accel_hidden =
+        std::max(later.accel_hidden, earlier.accel_hidden) * std::sqrt(sweep);
+    gyro2 += gyro_hidden * gyro_hidden;
+    accel2 += accel_hidden * accel_hidden;
     if (dt > config.gap)
     {
         // A smooth signal leaves the straight line between its ends with the square of time; one
@@ -57,7 +63,7 @@ StepNoise noiseOf(
         gyro2 += rate * rate * dt;
         accel2 += accel * accel * dt;
     }
-    return {std::sqrt(gyro2), std::sqrt(accel2)};
+    return {std::sqrt(gyro2), std::sqrt(accel2), gyro_hidden};
 }
 }  // namespace
 

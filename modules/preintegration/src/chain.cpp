@@ -8,7 +8,7 @@ PreintegratedImu startChain(
     PreintegratedImu chain;
     chain.bias_accel = bias_accel;
     chain.bias_gyro = bias_gyro;
-    chain.knots.push_back({at_end, {}});
+    chain.knots.push_back({at_end, {}, 0});
     return chain;
 }
 
@@ -51,6 +51,6 @@ void extendBackward(PreintegratedImu& chain, const ImuSample& earlier, const Ste
     // White noise is not constant during the step: a third of dt^3, of which its mean explains a
     // quarter. Without it one long step would tie position and velocity to each other.
     chain.covariance.diagonal().head<3>().array() += noise.accel * noise.accel * dt * dt * dt / 12;
-    chain.knots.push_back({earlier, delta});
+    chain.knots.push_back({earlier, delta, later.hidden + 3 * square(noise.gyro_hidden) * dt});
 }
 }  // namespace taut

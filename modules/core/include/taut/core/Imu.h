@@ -16,6 +16,9 @@ struct ImuSample
     Time t = 0;
     Vector3d gyro = Vector3d::Zero();   //!< angular rate [rad/s]
     Vector3d accel = Vector3d::Zero();  //!< specific force [m/s^2]; at rest R^T g, upwards
+    // Standard deviation of what a reading beyond the sensor's range hides; 0: within it.
+    double gyro_hidden = 0;   //!< [rad/s]
+    double accel_hidden = 0;  //!< [m/s^2]
 };
 
 using ImuSamples = std::vector<ImuSample>;  //!< strictly increasing in time

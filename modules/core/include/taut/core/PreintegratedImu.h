@@ -31,6 +31,9 @@ struct ImuKnot
 {
     ImuSample sample;
     MotionDelta delta;
+    /** Variance of the rotation from t_k back to here, of what the gyro hid [rad^2, of all axes].
+     */
+    double hidden = 0;
 };
 
 /** The motion between two scan ends as the IMU tells it, integrated from t_k backward to t_{k-1}.
@@ -61,6 +64,11 @@ class PreintegratedImu
      * interval. */
     MotionDelta at(Time t, std::size_t& hint) const;
     MotionDelta at(Time t) const;
+
+    /** Share of a gap in rotation between t_k and t_{k-1} that is closed from t_k back to t. The
+     * most probable path of white noise closes it in proportion to the variance that it gathers:
+     * with time, but for stretches in which the gyro was at its limit. */
+    double gapShare(Time t, std::size_t hint) const;
 
     /** The same without the derivatives. */
     Motion valueAt(Time t, std::size_t& hint) const;

@@ -57,13 +57,14 @@ class SweepPath
     struct Local  // the body at t in the frame at t_k
     {
         double d = 0, mu = 0;
+        double turned = 0;                           // share of the rotation gap, closed at t
         MotionDelta motion;                          // corrected for the current biases
         Pose apriori;                                // (Rbar_j, pbar_j)
         Pose corrected;                              // (Rcheck_j, pcheck_j)
         Matrix3d correction = Matrix3d::Identity();  // dR_j
     };
 
-    Local localAt(Time t, const Motion& motion) const;
+    Local localAt(Time t, const Motion& motion, std::size_t hint) const;
     Vector3d aprioriPosition(double d, const Motion& motion) const;
     void rotationJacobian(const Local& at, const MotionDelta& motion, PathJacobian& J) const;
     void positionJacobian(const Local& at, const MotionDelta& motion, PathJacobian& J) const;

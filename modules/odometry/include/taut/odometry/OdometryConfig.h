@@ -9,6 +9,7 @@
 #include "taut/core/Solver.h"
 #include "taut/factors/LidarFactor.h"
 #include "taut/odometry/transformScan.h"
+#include "taut/preintegration/Declipper.h"
 #include "taut/preintegration/Initializer.h"
 
 namespace taut
@@ -65,6 +66,7 @@ struct OdometryConfig
     InitializationConfig initialization;
     LidarNoiseConfig lidar_noise;
     ImuNoise imu_noise;
+    ImuRange imu_range;
     bool imu_noise_from_rest = true;  //!< raise the white noise to what is seen at rest
     RangeConfig range;
     MapInsertConfig insert;
