@@ -102,6 +102,13 @@ TEST(TheUnitsOfAnImu, ThatShowLaterThanTheRestGiveAWarning)
     EXPECT_NEAR(told.imu[799].gyro.x(), 0.6 * std::cos(2 * 3.99), 1e-9);
 }
 
+TEST(TheUnitsOfAnImu, AreNotToldByABiasAtRest)
+{
+    const Outcome o = check(samples(4, 8, 1, 1, 0.1));  // 5.7 deg/s
+    EXPECT_TRUE(o.warnings.counts().empty());
+    EXPECT_NEAR(o.imu[0].gyro.x(), 0.1, 1e-9);
+}
+
 TEST(TheUnitsOfAnImu, ThatAreNoneGiveAWarning)
 {
     const Outcome o = check(samples(4, 8, 0.3, 1));

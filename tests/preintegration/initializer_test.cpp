@@ -157,6 +157,25 @@ TEST_F(InitializerTest, AShorterRestIsUsedAndReported)
     EXPECT_NEAR(toSeconds(log.kept()[0].t - start), 3, 0.5);
 }
 
+TEST_F(InitializerTest, TheNoiseOfASensorIsNoMotion)
+{
+    gyro_noise = 4e-3;
+    accel_noise = 4e-2;
+    for (int i = 0; i < 20; i++)
+    {
+        Initializer initializer(config, log.sink());
+        ASSERT_TRUE(rest(initializer, 11)) << i;
+        EXPECT_TRUE(initializer.result()->at_rest);
+        EXPECT_NEAR(initializer.result()->rest_duration, config.rest_duration, 0.3);
+    }
+    EXPECT_TRUE(log.counts().empty());
+    Initializer initializer(config, log.sink());
+    EXPECT_FALSE(rest(initializer, 4));
+    ASSERT_TRUE(walk(initializer, 1));
+    EXPECT_NEAR(initializer.result()->rest_duration, 4, 0.5);
+    EXPECT_EQ(log.count("short_rest"), 1u);
+}
+
 TEST_F(InitializerTest, StartsInMotionWithAPriorThatSaysSo)
 {
     config.on_motion = OnMotion::Start;

@@ -16,6 +16,7 @@ constexpr std::size_t kNoOutliers = 5;  // samples that are too fast by mistake 
 constexpr double kRestTolerance = 0.5;  // m/s^2 about gravity: little else is felt
 constexpr double kClear = 3;            // so much better one unit must explain the turn, and
 constexpr double kTurn = 0.05;          // rad, this wrong the other must be
+constexpr double kBiasTurn = 0.25;      // rad, that a bias or noise does not feign in a second
 
 Vector3d meanAccel(const ImuSamples& samples, std::size_t begin, std::size_t end)
 {
@@ -69,7 +70,10 @@ void ImuUnitJudge::closeWindow()
         const auto error = [&](double scale)
         { return turnError(window_, n / 6, n - 1 - n / 6, scale, before, after); };
         const double rad = error(1), deg = error(kDegree);
-        if (gravity_alone && rad > std::max(kTurn, kClear * deg)) seconds_deg_++;
+        // At rest a bias turns as if it were a rate in rad/s that is too high.
+        const double turned = std::atan2(before.cross(after).norm(), before.dot(after));
+        if (gravity_alone && rad > std::max(turned > kTurn ? kTurn : kBiasTurn, kClear * deg))
+            seconds_deg_++;
         if (gravity_alone && deg > std::max(kTurn, kClear * rad)) seconds_rad_++;
     }
     window_.clear();

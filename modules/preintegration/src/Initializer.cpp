@@ -12,6 +12,11 @@ namespace
 constexpr double kGaugeSigma = 1e-5;         // position [m] and yaw [rad] are 0 by definition
 constexpr double kRestVelocitySigma = 1e-3;  // [m/s]
 
+// How much the means of windows may differ by the sensor's noise.
+constexpr double kNoiseSigmas = 4;      // of their length, as they spread in the rest so far
+constexpr double kMostNoise = 4;        // times what is asked for: more is motion
+constexpr std::size_t kFewWindows = 8;  // fewer do not tell their spread
+
 /** Joint covariance of (theta, ba) from a prior on both and the mean specific force
  * mean = R^T g + ba, known to sigma_mean. */
 Eigen::Matrix<double, 6, 6> tiltAndBiasCovariance(
@@ -146,8 +151,34 @@ bool Initializer::plausibleRest(const Window& w) const
 
 bool Initializer::continuesRest(const Window& w) const
 {
-    return (w.gyroMean() - rest_.gyroMean()).norm() < config_.max_rate_change &&
-           (w.accelMean() - rest_.accelMean()).norm() < config_.max_accel_change;
+    // Means of windows differ by the noise of the sensor, too: as those of the rest so far do.
+    const auto most = [&](double asked, const Vector3d& spread)
+    { return std::clamp(kNoiseSigmas * spread.norm(), asked, kMostNoise * asked); };
+    const auto [gyro, accel] = spreadOfRest();
+    return (w.gyroMean() - rest_.gyroMean()).norm() < most(config_.max_rate_change, gyro) &&
+           (w.accelMean() - rest_.accelMean()).norm() < most(config_.max_accel_change, accel);
+}
+
+std::pair<Vector3d, Vector3d> Initializer::spreadOfRest() const
+{
+    if (rests_.size() < kFewWindows)
+    {
+        // Too few to tell; white noise is averaged by the root of the number of samples.
+        const double n = rests_.front().count;
+        const auto spread = [&](const Vector3d& square, const Vector3d& mean) -> Vector3d
+        { return ((square / rest_.count - mean.cwiseAbs2()).cwiseMax(0) / n).cwiseSqrt(); };
+        return {
+            spread(rest_.gyro_square, rest_.gyroMean()),
+            spread(rest_.accel_square, rest_.accelMean())};
+    }
+    Vector3d gyro = Vector3d::Zero(), accel = Vector3d::Zero();
+    for (const Window& w : rests_)
+    {
+        gyro += (w.gyroMean() - rest_.gyroMean()).cwiseAbs2();
+        accel += (w.accelMean() - rest_.accelMean()).cwiseAbs2();
+    }
+    const double n = static_cast<double>(rests_.size() - 1);
+    return {(gyro / n).cwiseSqrt(), (accel / n).cwiseSqrt()};
 }
 
 void Initializer::onMotion(Time t)

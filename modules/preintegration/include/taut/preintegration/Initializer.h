@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "taut/core/Config.h"
@@ -96,6 +97,8 @@ class Initializer
     void closeWindow();
     bool restedFully() const;
     bool continuesRest(const Window& w) const;
+    /** Standard deviation, per axis, of the means of the rest's windows: rate and force. */
+    std::pair<Vector3d, Vector3d> spreadOfRest() const;
     bool plausibleRest(const Window& w) const;
     void onMotion(Time t);
     void startInMotion(Time t, double rested);
