@@ -95,6 +95,21 @@ TEST_F(ASecondPass, AlongTheSamePathGivesTheSameBits)
     EXPECT_EQ(mapAlong(records, "again"), contentOf(folder / "first/map.ply"));
 }
 
+TEST_F(ASecondPass, AGyroAtTheEndOfItsRangeHidesTheSameInBoth)
+{
+    method.odometry.imu_range.gyro = 0.3;
+    for (ImuSample& s : imu) s.gyro = s.gyro.cwiseMin(0.3).cwiseMax(-0.3);
+    firstPass();
+    EXPECT_EQ(mapAlong(records, "again"), contentOf(folder / "first/map.ply"));
+}
+
+TEST_F(ASecondPass, WithoutAnImuGivesTheSameBits)
+{
+    imu.clear();
+    firstPass();
+    EXPECT_EQ(mapAlong(records, "again"), contentOf(folder / "first/map.ply"));
+}
+
 TEST_F(ASecondPass, AlongAPathThatIsMovedAsAWholeMovesThePoints)
 {
     firstPass();

@@ -34,8 +34,7 @@ Pipeline::Pipeline(OdometryConfig config, Executor& executor, WarningSink warn, 
     : config_(std::move(config)),
       warn_(std::move(warn)),
       events_(std::move(events)),
-      streams_(std::make_unique<Synchronizer>(config_.imu_wait, warn_)),
-      declipper_(config_.imu_range, warn_),
+      streams_(std::make_unique<Synchronizer>(config_.imu_wait, config_.imu_range, warn_)),
       initializer_(config_.initialization, warn_),
       odometry_(config_, executor, warn_),
       needs_imu_(config_.preintegrator->needsImu())
@@ -58,14 +57,9 @@ std::size_t Pipeline::waiting() const
 void Pipeline::add(const ImuSample& sample)
 {
     if (!needs_imu_) return;
-    for (const ImuSample& complete : declipper_.add(sample)) addComplete(complete);
-    advance();
-}
-
-void Pipeline::addComplete(const ImuSample& sample)
-{
     streams_->add(sample);
     if (withImu() && !initialization_) initializer_.add(sample);
+    advance();
 }
 
 void Pipeline::add(Scan scan)
@@ -80,7 +74,6 @@ void Pipeline::finish()
     finished_ = true;
     try
     {
-        for (const ImuSample& complete : declipper_.finish()) addComplete(complete);
         streams_->end();
         advance();
     }

@@ -21,7 +21,7 @@ SweepReplay::SweepReplay(
     : config_(config),
       records_(std::move(records)),
       sink_(std::move(sink)),
-      streams_(std::make_unique<Synchronizer>(config.imu_wait, WarningSink{})),
+      streams_(std::make_unique<Synchronizer>(config.imu_wait, config.imu_range, WarningSink{})),
       preintegrator_(config.preintegrator.create()),
       fallback_preintegrator_(config.fallback_preintegrator.create()),
       next_(records_())

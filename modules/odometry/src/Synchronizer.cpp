@@ -7,9 +7,17 @@
 
 namespace taut
 {
-Synchronizer::Synchronizer(double wait, WarningSink warn) : wait_(wait), warn_(std::move(warn)) {}
+Synchronizer::Synchronizer(double wait, const ImuRange& range, WarningSink warn)
+    : wait_(wait), warn_(std::move(warn)), declipper_(range, warn_)
+{
+}
 
 void Synchronizer::add(const ImuSample& sample)
+{
+    for (const ImuSample& complete : declipper_.add(sample)) addComplete(complete);
+}
+
+void Synchronizer::addComplete(const ImuSample& sample)
 {
     if (imu_state_ == Imu::Absent)
     {
@@ -76,6 +84,7 @@ void Synchronizer::judgeSilence()
 
 void Synchronizer::end()
 {
+    for (const ImuSample& complete : declipper_.finish()) addComplete(complete);
     ended_ = true;
     if (imu_state_ == Imu::Awaited && !scans_.empty())
     {

@@ -6,12 +6,13 @@
 #include "taut/core/Imu.h"
 #include "taut/core/Scan.h"
 #include "taut/core/Warning.h"
+#include "taut/preintegration/Declipper.h"
 
 namespace taut
 {
 /** Brings two streams together in time: holds each scan until the IMU reaches over its end, and
  * decides by the clock of the scans when to wait no longer. Holds at most the scans of that wait
- * once the estimation runs. */
+ * once the estimation runs. Samples at the end of the sensor's range are put back on the way. */
 class Synchronizer
 {
  public:
@@ -24,7 +25,7 @@ class Synchronizer
     };
 
     /** `wait` [s] of scans without a sample end the waiting. */
-    Synchronizer(double wait, WarningSink warn);
+    Synchronizer(double wait, const ImuRange& range, WarningSink warn);
 
     void add(const ImuSample& sample);
     void add(Scan scan);
@@ -56,10 +57,12 @@ class Synchronizer
     void forgetSamplesBefore(Time t);
 
  private:
+    void addComplete(const ImuSample& sample);
     void judgeSilence();
 
     double wait_;
     WarningSink warn_;
+    Declipper declipper_;
     std::deque<Scan> scans_;
     ImuSamples imu_;
     Imu imu_state_ = Imu::Awaited;

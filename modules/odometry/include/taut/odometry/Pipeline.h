@@ -38,7 +38,6 @@ class Pipeline
     std::size_t mapSize() const { return odometry_.mapSize(); }
 
  private:
-    void addComplete(const ImuSample& sample);
     void advance();
     void tellEnd();
     void findStart();
@@ -55,7 +54,6 @@ class Pipeline
     WarningSink warn_;
     EventSink events_;
     std::unique_ptr<Synchronizer> streams_;
-    Declipper declipper_;
     Initializer initializer_;
     Odometry odometry_;
     std::optional<Initialization> initialization_;
