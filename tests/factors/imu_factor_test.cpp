@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "steady_turn.h"
+#include "taut/preintegration/ConstantVelocityPreintegrator.h"
 #include "taut/preintegration/MidpointPreintegrator.h"
 
 using namespace taut;
@@ -75,6 +76,52 @@ TEST(ImuFactor, TheTrueMotionHasNoResidual)
     const SteadyTurn body;
     const PreintegratedImu imu = integrate(body, body.samples(0, kEnd, kMillisecond));
     EXPECT_LT(imuResidual(imu, body.at(0), body.at(kEnd)).norm(), 1e-5);
+}
+
+TEST(ImuFactor, CovarianceOfARateThatNothingMeasuresIsThatOfManyWalks)
+{
+    PreintegrationRequest request;
+    request.end = kEnd;
+    request.previous_rate = {0.3, -0.2, 0.5};
+    ConstantVelocityPreintegrator preintegrator;
+    preintegrator.config.angular_acceleration = 2;
+    const PreintegratedImu imu = preintegrator.integrate(request);
+    const double duration = toSeconds(kEnd);
+    // A constant angular acceleration of one sigma changes the rate by as much as the walk does.
+    EXPECT_NEAR(imu.rate_walk * duration, square(2 * duration), 1e-12);
+
+    Random random(4);
+    Eigen::Matrix<double, 6, 6> scatter = Eigen::Matrix<double, 6, 6>::Zero();
+    constexpr int runs = 4000, steps = 50;
+    const double dt = duration / steps;
+    for (int run = 0; run < runs; run++)
+    {
+        NavState current = request.previous;
+        current.t = kEnd;
+        Vector3d rate = request.previous_rate;
+        for (int i = 0; i < steps; i++)
+        {
+            const Vector3d change = random.vector(std::sqrt(imu.rate_walk * dt));
+            current.T_world_imu.R = current.T_world_imu.R * expSO3((rate + 0.5 * change) * dt);
+            rate += change;
+        }
+        current.bias_gyro = request.previous.bias_gyro - (rate - request.previous_rate);
+        const NavState::Vector r = imuResidual(imu, request.previous, current);
+        Eigen::Matrix<double, 6, 1> e;
+        e << r.segment<3>(NavState::kRotation), r.segment<3>(NavState::kBiasGyro);
+        scatter += e * e.transpose() / runs;
+    }
+    const NavState::Matrix P = imuCovariance(imu);
+    Eigen::Matrix<double, 6, 6> claimed;
+    claimed << P.block<3, 3>(NavState::kRotation, NavState::kRotation),
+        P.block<3, 3>(NavState::kRotation, NavState::kBiasGyro),
+        P.block<3, 3>(NavState::kBiasGyro, NavState::kRotation),
+        P.block<3, 3>(NavState::kBiasGyro, NavState::kBiasGyro);
+    const Eigen::Matrix<double, 6, 6> L = claimed.llt().matrixL();
+    const Eigen::Matrix<double, 6, 6> half = L.triangularView<Eigen::Lower>().solve(scatter);
+    const Eigen::Matrix<double, 6, 6> whitened =
+        L.triangularView<Eigen::Lower>().solve(half.transpose());
+    EXPECT_LT((whitened - Eigen::Matrix<double, 6, 6>::Identity()).cwiseAbs().maxCoeff(), 0.12);
 }
 
 TEST(ImuFactor, CovarianceIsThatOfManyNoisyResiduals)

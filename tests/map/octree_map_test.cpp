@@ -56,6 +56,42 @@ TEST(OctreeMap, SigmaIsTheThicknessOfTheSurface)
     }
 }
 
+TEST(OctreeMap, TheConeOfOneRingIsNoSurface)
+{
+    // A body at rest in a room of 8 x 6 m: the ring that looks up by 9 degrees, seen ten times.
+    static constexpr double slope = 0.16;
+    const auto onWall = [](double azimuth) -> Vector3d
+    {
+        const double x = std::cos(azimuth), y = std::sin(azimuth);
+        return std::min(4 / std::abs(x), 3 / std::abs(y)) * Vector3d(x, y, slope);
+    };
+    Random random(5);
+    std::vector<MapPoint> points;
+    for (int i = 0; i < 10 * 900; i++)
+    {
+        const Vector3d p = onWall(2 * M_PI * i / 900);
+        points.push_back(
+            {p + random.vector(0.02).x() * p.normalized(), FeatureKind::Any, -p.normalized()});
+    }
+    // Had the body risen by 5 cm, the points would be above the cone.
+    const auto onTheCone = [&](double min_cosine)
+    {
+        OctreeMap map;
+        map.config.min_cosine = min_cosine;
+        map.insert(points, single);
+        int matches = 0;
+        for (int i = 0; i < 900; i++)
+        {
+            const Vector3d p = onWall(2 * M_PI * i / 900) + Vector3d(0, 0, 0.05);
+            const Correspondence c = matchOne(map, p, FeatureKind::Any);
+            if (c.surface == Surface::Plane && std::abs(c.direction.z()) > 0.9) matches++;
+        }
+        return matches;
+    };
+    EXPECT_GT(onTheCone(0), 60);
+    EXPECT_LT(onTheCone(OctreeMapConfig{}.min_cosine), onTheCone(0) / 3);
+}
+
 // Beyond what an integer counts in leaves: for the undefined-behaviour sanitizer.
 TEST(OctreeMap, GoesAlongHoweverFarThePoseGoes)
 {

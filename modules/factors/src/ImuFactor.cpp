@@ -23,8 +23,8 @@ ImuResidual linearizeImu(
     const Matrix3d Rt = current.T_world_imu.R.transpose();
     const Matrix3d I = Matrix3d::Identity();
     const Vector3d dp = Rt * (current.T_world_imu.p - current.v_world * dt -
-                              0.5 * kGravityWorld * dt * dt - previous.T_world_imu.p);
-    const Vector3d dv = Rt * (current.v_world + kGravityWorld * dt - previous.v_world);
+                              0.5 * imu.gravity * dt * dt - previous.T_world_imu.p);
+    const Vector3d dv = Rt * (current.v_world + imu.gravity * dt - previous.v_world);
     const Matrix3d gap = Rt * previous.T_world_imu.R * start.gamma.transpose();
 
     ImuResidual f;
@@ -75,6 +75,10 @@ NavState::Matrix imuCovariance(const PreintegratedImu& imu)
     turn.block<3, 3>(6, 6) = -imu.knots.back().delta.gamma;
     P.topLeftCorner<9, 9>() = turn * imu.covariance * turn.transpose();
     P.bottomRightCorner<6, 6>() = imu.bias_walk_covariance;
+    // A rate that walks by w(s) ends at another one, which moves the bias by -int w, and the
+    // rotation, seen from that rate, by int s w: correlated by -q Delta^2 / 2.
+    const Matrix3d both = Matrix3d::Identity() * (-0.5 * imu.rate_walk * square(imu.duration()));
+    P.block<3, 3>(kTheta, kBg) = P.block<3, 3>(kBg, kTheta) = both;
     return P;
 }
 
@@ -85,8 +89,8 @@ NavState predict(const PreintegratedImu& imu, const NavState& previous)
     NavState x = previous;
     x.t = imu.end();
     x.T_world_imu.R = normalizedRotation(previous.T_world_imu.R * start.gamma.transpose());
-    x.v_world = previous.v_world - kGravityWorld * dt - x.T_world_imu.R * start.beta;
-    x.T_world_imu.p = previous.T_world_imu.p + x.v_world * dt + 0.5 * kGravityWorld * dt * dt -
+    x.v_world = previous.v_world - imu.gravity * dt - x.T_world_imu.R * start.beta;
+    x.T_world_imu.p = previous.T_world_imu.p + x.v_world * dt + 0.5 * imu.gravity * dt * dt -
                       x.T_world_imu.R * start.alpha;
     return x;
 }

@@ -18,7 +18,7 @@ const std::map<std::string, Undistortion>& modeNames()
 // Columns of the jacobian: the previous state first, then the current one.
 constexpr int kPrevious = 0, kCurrent = NavState::kSize;
 constexpr int kP0 = kPrevious + NavState::kPosition, kV0 = kPrevious + NavState::kVelocity,
-              kTheta0 = kPrevious + NavState::kRotation;
+              kTheta0 = kPrevious + NavState::kRotation, kBg0 = kPrevious + NavState::kBiasGyro;
 constexpr int kP = kCurrent + NavState::kPosition, kV = kCurrent + NavState::kVelocity,
               kTheta = kCurrent + NavState::kRotation, kBa = kCurrent + NavState::kBiasAccel,
               kBg = kCurrent + NavState::kBiasGyro;
@@ -51,11 +51,16 @@ SweepPath::SweepPath(
     setStates(prior_previous, prior_current);
 }
 
+bool SweepPath::rateIsState() const
+{
+    return mode_ == Undistortion::Bridge && imu_.rate_walk > 0;
+}
+
 Vector3d SweepPath::aprioriPosition(double d, const Motion& motion) const
 {
     // The one-pass modes keep the a-priori velocity and direction of gravity.
     const NavState& x = isIterated(mode_) ? current_ : prior_current_;
-    return x.T_world_imu.R.transpose() * (-x.v_world * d - 0.5 * kGravityWorld * d * d) +
+    return x.T_world_imu.R.transpose() * (-x.v_world * d - 0.5 * imu_.gravity * d * d) +
            motion.alpha;
 }
 
@@ -76,10 +81,11 @@ void SweepPath::setStates(const NavState& previous, const NavState& current)
 
     gap_rotation_ = Rt * previous.T_world_imu.R * start_.gamma.transpose();
     gap_log_ = logSO3(gap_rotation_);
+    gap_rate_ = start_.gamma * (current.bias_gyro - previous.bias_gyro);
     gap_translation_ = start_in_k - gap_rotation_ * apriori_start_.p;
     gap_position_ = start_in_k - apriori_start_.p;
     gap_velocity_ =
-        Rt * (previous.v_world - current.v_world - kGravityWorld * duration_) - start_.beta;
+        Rt * (previous.v_world - current.v_world - imu_.gravity * duration_) - start_.beta;
 }
 
 SweepPath::Local SweepPath::localAt(Time t, const Motion& motion, std::size_t hint) const
@@ -96,7 +102,15 @@ SweepPath::Local SweepPath::localAt(Time t, const Motion& motion, std::size_t hi
     if (mode_ == Undistortion::Iterated || mode_ == Undistortion::Bridge)
     {
         at.turned = imu_.gapShare(t, hint);
-        at.correction = expSO3(at.turned * gap_log_);
+        at.turn = at.turned * gap_log_;
+        if (rateIsState())
+        {
+            // As the position: the cubic that has the rates of both ends, too.
+            at.turned = square(at.mu) * (3 - 2 * at.mu);
+            at.by_rate = square(at.mu) * (1 - at.mu) * duration_;
+            at.turn = at.turned * gap_log_ + at.by_rate * gap_rate_;
+        }
+        at.correction = expSO3(at.turn);
         at.corrected.R = at.correction * at.apriori.R;
     }
     const double mu2 = at.mu * at.mu, mu3 = mu2 * at.mu;
@@ -133,12 +147,17 @@ void SweepPath::rotationJacobian(const Local& at, const MotionDelta& motion, Pat
 
     // R_D <- R_D Exp(d_D) moves the correction by dR_j <- dR_j Exp(e), e = mu Jr(mu phi) Jr^-1(phi)
     // d_D.
-    const Matrix3d spread = motion.gamma.transpose() * at.turned *
-                            rightJacobianSO3(at.turned * gap_log_) *
+    const Matrix3d spread = motion.gamma.transpose() * at.turned * rightJacobianSO3(at.turn) *
                             inverseRightJacobianSO3(gap_log_);
     J.block<3, 3>(kRows, kTheta) -= spread * gap_rotation_.transpose();
     J.block<3, 3>(kRows, kTheta0) = spread * start_.gamma;
     J.block<3, 3>(kRows, kBg) -= spread * start_.gamma * start_.dtheta_dbg;
+    if (!rateIsState()) return;
+    const Matrix3d by_rate =
+        motion.gamma.transpose() * at.by_rate * rightJacobianSO3(at.turn) * start_.gamma;
+    const Vector3d change = current_.bias_gyro - previous_.bias_gyro;
+    J.block<3, 3>(kRows, kBg) += by_rate * (Matrix3d::Identity() - hat(change) * start_.dtheta_dbg);
+    J.block<3, 3>(kRows, kBg0) -= by_rate;
 }
 
 void SweepPath::positionJacobian(const Local& at, const MotionDelta& motion, PathJacobian& J) const
@@ -157,7 +176,7 @@ void SweepPath::positionJacobian(const Local& at, const MotionDelta& motion, Pat
     // pbar(d) = R^T (-v d - 1/2 g d^2) + alpha, times a factor, added to C.
     const auto addApriori = [&](const Matrix3d& factor, double d, const MotionDelta& m)
     {
-        const Vector3d fall = Rt * (-current_.v_world * d - 0.5 * kGravityWorld * d * d);
+        const Vector3d fall = Rt * (-current_.v_world * d - 0.5 * imu_.gravity * d * d);
         C.block<3, 3>(0, kTheta) += factor * hat(fall);
         C.block<3, 3>(0, kV) -= factor * Rt * d;
         C.block<3, 3>(0, kBa) += factor * m.dalpha_dba;
@@ -192,7 +211,7 @@ void SweepPath::positionJacobian(const Local& at, const MotionDelta& motion, Pat
         const double close_velocity = (mu2 - mu3) * duration_;
         addStart(close_position);
         addApriori(-close_position * I, duration_, start_);
-        const Vector3d dv = Rt * (previous_.v_world - current_.v_world - kGravityWorld * duration_);
+        const Vector3d dv = Rt * (previous_.v_world - current_.v_world - imu_.gravity * duration_);
         C.block<3, 3>(0, kTheta) += close_velocity * hat(dv);
         C.block<3, 3>(0, kV0) += close_velocity * Rt;
         C.block<3, 3>(0, kV) -= close_velocity * Rt;

@@ -56,6 +56,9 @@ void OctreeMap::configure(ConfigSection& s)
     s.key("max_flatness", config.max_flatness, {0, 1}, "ratio of thickness to the extent");
     s.key("min_width", config.min_width, kPositive, "m, narrower windows have no known normal");
     s.key(
+        "min_cosine", config.min_cosine, {0, 1},
+        "of the angle between a surface's normal and the views of it: else it is seen edge-on");
+    s.key(
         "min_spread", config.min_spread, kNotNegative,
         "the same as a share of the window's half edge");
     s.key("gate", config.gate, kPositive, "m, largest distance to the surface");
@@ -220,8 +223,8 @@ void OctreeMap::recenter(const Vector3d& center_world)
         const double blocks = std::round((center_world[i] - origin_[i]) / edge);
         // Beyond the keys nothing is left that would have to be moved.
         constexpr double kFurthest = 2 * kMiddleKey;
-        shift[static_cast<std::size_t>(i)] = static_cast<int>(
-            std::clamp(blocks * (1 << (StatisticsTree::kDepth - blockDepth())), -kFurthest, kFurthest));
+        shift[static_cast<std::size_t>(i)] = static_cast<int>(std::clamp(
+            blocks * (1 << (StatisticsTree::kDepth - blockDepth())), -kFurthest, kFurthest));
         origin_[i] += blocks * edge;
     }
     blocks_.clear();

@@ -212,7 +212,11 @@ void OctreeMap::compute(Window& window, int level, const PointStatistics& statis
     window.variance = std::max(thickness2, config.min_sigma * config.min_sigma);
     // The relative deviation of a variance from n - 3 residuals is sqrt(2 / (n - 3)).
     window.largest_variance = window.variance * (1 + kDoubt * std::sqrt(2 / (window.count - 3)));
-    window.plane = isPlane(window, level, thickness2);
+    // One ring of a LiDAR that has hardly moved lies in the cone of its beam, which looks like a
+    // surface where the ring bends or goes around a corner: one that is seen edge-on.
+    const double view = (statistics.views / statistics.count).norm();
+    window.plane =
+        std::abs(window.cosine) >= config.min_cosine * view && isPlane(window, level, thickness2);
     window.line = isLine(window);
 }
 

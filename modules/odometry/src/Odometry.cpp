@@ -20,6 +20,9 @@ namespace
 constexpr double kFitMemory = 0.1;
 constexpr double kDoubtMemory = 0.01;
 
+/** [rad/s] by which the rate may differ from that of the sweep before the IMU fell silent. */
+constexpr double kRateSigma = 2;
+
 std::array<double, 3> eigenvaluesOf(const Matrix3d& information)
 {
     const Vector3d e =
@@ -57,6 +60,7 @@ void Odometry::start(const Initialization& initialization)
     previous_.information =
         initialization.estimate.covariance.ldlt().solve(NavState::Matrix::Identity());
     previous_rate_.setZero();
+    rate_is_state_ = false;
     rest_ = Rest(initialization, config_.initialization);
     noise_ = config_.imu_noise;
     if (config_.imu_noise_from_rest && initialization.at_rest)
@@ -90,7 +94,9 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples* imu)
     result.report.scan_points = scan.points.size();
     watch.stage(result.report.times.transform);
 
+    if (imu != nullptr && rate_is_state_) takeBiasesBack();
     const PreintegratedImu motion = integrate(scan.end, imu);
+    if (motion.rate_walk > 0 && !rate_is_state_) makeRateAState();
     const NavState prior = predict(motion, previous_.state);
     Undistortion mode = config_.estimation.undistortion;
     if (scan.already_undistorted) mode = Undistortion::None;
@@ -121,6 +127,21 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples* imu)
     watch.stage(result.report.times.insert);
     if (config_.keep_undistorted) result.undistorted = undistorted(raw, begin, path);
     return result;
+}
+
+void Odometry::makeRateAState()
+{
+    rate_is_state_ = true;
+    bias_gyro_ = previous_.state.bias_gyro;
+    bias_gyro_covariance_ = previous_.covarianceOf(NavState::kBiasGyro);
+    previous_.forget(NavState::kBiasGyro, square(kRateSigma) * Matrix3d::Identity());
+}
+
+void Odometry::takeBiasesBack()
+{
+    rate_is_state_ = false;
+    previous_.state.bias_gyro = bias_gyro_;
+    previous_.forget(NavState::kBiasGyro, bias_gyro_covariance_);
 }
 
 SweepPath Odometry::estimate(
@@ -157,8 +178,11 @@ SweepPath Odometry::estimate(
     previous_rate_ =
         logSO3(problem.previous().T_world_imu.R.transpose() * problem.current().T_world_imu.R) /
         motion.duration();
+    if (rate_is_state_)
+        previous_rate_ = motion.knots.front().sample.gyro - problem.current().bias_gyro;
     previous_ = {problem.current(), information};
     result.estimate.state = previous_.state;
+    if (rate_is_state_) result.estimate.state.bias_gyro = bias_gyro_;
     result.estimate.covariance = information.ldlt().solve(NavState::Matrix::Identity());
     endRestIfLeft(lidar_information);
     judgeFit(result.report);

@@ -12,6 +12,9 @@ void EstimationConfig::declare(ConfigSection& s)
         {{"fixed", PreviousState::Fixed}, {"released", PreviousState::Released}},
         "held under its covariance, or estimated together with the new state");
     s.key("max_iterations", max_iterations, {1, 100}, "look-ups of correspondences");
+    s.key(
+        "max_iterations_without_imu", max_iterations_without_imu, {1, 100},
+        "the same where no IMU tells where to begin");
     s.key("min_step", min_step, kPositive, "sigmas, step after which matches are not renewed");
     s.key("min_correspondences", min_correspondences, {6, 1e6}, "fewer are not believed");
     s.key("balance", balance, "scale the LiDAR noise by its own reduced chi-square");

@@ -77,7 +77,9 @@ std::string Registration::iterate(LidarFactor::PoseCovariance unexplained, ScanR
 {
     const EstimationConfig& config = config_.estimation;
     report.balance = config.inflation;
-    for (int i = 0; i < config.max_iterations && !map_.empty(); i++)
+    const int most =
+        motion_.rate_walk > 0 ? config.max_iterations_without_imu : config.max_iterations;
+    for (int i = 0; i < most && !map_.empty(); i++)
     {
         Stopwatch watch;
         const std::vector<Vector3d>& world = lidar_.undistort(path_);

@@ -46,6 +46,20 @@ void leaveOpen(const EstimationConfig& config, ProblemMatrix& hessian, ProblemVe
 }
 }  // namespace
 
+Matrix3d NavPrior::covarianceOf(int part) const
+{
+    return symmetricInverse(information).block<3, 3>(part, part);
+}
+
+void NavPrior::forget(int part, const Matrix3d& covariance)
+{
+    NavState::Matrix P = symmetricInverse(information);
+    P.middleRows<3>(part).setZero();
+    P.middleCols<3>(part).setZero();
+    P.block<3, 3>(part, part) = covariance;
+    information = symmetricInverse(P);
+}
+
 ScanProblem::ScanProblem(
     const NavPrior& previous, const PreintegratedImu& imu, const LidarFactor& lidar,
     SweepPath& path, const EstimationConfig& config)
@@ -124,7 +138,8 @@ double ScanProblem::addBiasPrior(ProblemMatrix& H, ProblemVector& g) const
         cost += 0.5 * w * bias.squaredNorm();
     };
     add(NavState::kBiasAccel, current_.bias_accel, config_.accel_bias_sigma);
-    add(NavState::kBiasGyro, current_.bias_gyro, config_.gyro_bias_sigma);
+    // Where no gyro measures it, the rate stands in the place of its bias.
+    if (imu_.rate_walk == 0) add(NavState::kBiasGyro, current_.bias_gyro, config_.gyro_bias_sigma);
     return cost;
 }
 
@@ -234,7 +249,9 @@ ProblemVector ScanProblem::maxStep() const
         Vector3d::Constant(config_.max_step_velocity),
         Vector3d::Constant(config_.max_step_rotation),
         Vector3d::Constant(config_.max_step_bias_accel),
-        Vector3d::Constant(config_.max_step_bias_gyro);
+        Vector3d::Constant(
+            imu_.rate_walk > 0 ? config_.max_step_rotation / imu_.duration()
+                               : config_.max_step_bias_gyro);
     ProblemVector all(dimension());
     if (released())
         all << one, one;

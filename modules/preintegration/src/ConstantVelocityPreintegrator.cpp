@@ -21,28 +21,34 @@ PreintegratedImu ConstantVelocityPreintegrator::integrate(
 {
     if (request.end <= request.begin)
         throw std::invalid_argument("preintegration over an interval that is empty or backward");
-    const Matrix3d& R_begin = request.previous.T_world_imu.R;
+    // The samples are made up so that the rate is the one at the end of the sweep before. From
+    // there it is a state: what it changes by is told by the points of the sweep.
+    const NavState& previous = request.previous;
     const Vector3d& rate = request.previous_rate;
-    const Vector3d v_body = R_begin.transpose() * request.previous.v_world;
-    const auto sampleAt = [&](Time t)
-    {
-        const Matrix3d R = R_begin * expSO3(rate * toSeconds(t - request.begin));
-        return ImuSample{t, rate, rate.cross(v_body) + R.transpose() * kGravityWorld};
+    const Vector3d v_body = previous.T_world_imu.R.transpose() * previous.v_world;
+    const auto sampleAt = [&](Time t) {
+        return ImuSample{t, rate + previous.bias_gyro, rate.cross(v_body)};
     };
 
     // An unknown constant acceleration over the sweep, as the white noise of the same variance.
-    const double root = std::sqrt(toSeconds(request.end - request.begin));
-    const StepNoise noise{
-        config.angular_acceleration * root * root * root, config.acceleration * root};
+    const double duration = toSeconds(request.end - request.begin);
+    const StepNoise noise{0, config.acceleration * std::sqrt(duration)};
 
-    PreintegratedImu chain = startChain(sampleAt(request.end), Vector3d::Zero(), Vector3d::Zero());
+    PreintegratedImu chain =
+        startChain(sampleAt(request.end), Vector3d::Zero(), previous.bias_gyro);
+    chain.gravity.setZero();
+    chain.rate_walk = square(config.angular_acceleration) * duration;
     const Duration step = std::max<Duration>(1, fromSeconds(config.step));
     for (Time t = request.end - step; t > request.begin; t -= step)
         extendBackward(chain, sampleAt(t), noise);
     extendBackward(chain, sampleAt(request.begin), noise);
 
+    chain.covariance.bottomRightCorner<3, 3>().diagonal().array() +=
+        chain.rate_walk * duration * duration * duration / 3;
     chain.bias_walk_covariance.setIdentity();
-    chain.bias_walk_covariance *= 1e-12;  // the made-up samples have no bias to learn
+    chain.bias_walk_covariance *= 1e-12;  // the made-up forces have no bias to learn
+    chain.bias_walk_covariance.bottomRightCorner<3, 3>().diagonal().setConstant(
+        chain.rate_walk * duration);
     return chain;
 }
 }  // namespace taut

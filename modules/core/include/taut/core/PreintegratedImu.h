@@ -45,6 +45,13 @@ class PreintegratedImu
     Vector3d bias_accel = Vector3d::Zero();  //!< biases that the chain was integrated with
     Vector3d bias_gyro = Vector3d::Zero();
 
+    /** Specific force, in the world, of a body that is not accelerated [m/s^2]. Zero where the
+     * samples are made up and feel no gravity. */
+    Vector3d gravity = kGravityWorld;
+    /** Density of the angular acceleration's white noise [rad^2/s^3] where nothing measures the
+     * rate: then it is a state, the sample's rate minus bias_gyro. 0: the gyro measures it. */
+    double rate_walk = 0;
+
     /** Covariance of (alpha, beta, theta) at t_{k-1} from the white noise; theta perturbs gamma on
      * the right. */
     Eigen::Matrix<double, 9, 9> covariance = Eigen::Matrix<double, 9, 9>::Zero();

@@ -57,6 +57,8 @@ class SweepPath
     struct Local  // the body at t in the frame at t_k
     {
         double d = 0, mu = 0;
+        Vector3d turn = Vector3d::Zero();            // Log of the correction
+        double by_rate = 0;                          // share of the rate gap in it [s]
         double turned = 0;                           // share of the rotation gap, closed at t
         MotionDelta motion;                          // corrected for the current biases
         Pose apriori;                                // (Rbar_j, pbar_j)
@@ -65,6 +67,7 @@ class SweepPath
     };
 
     Local localAt(Time t, const Motion& motion, std::size_t hint) const;
+    bool rateIsState() const;
     Vector3d aprioriPosition(double d, const Motion& motion) const;
     void rotationJacobian(const Local& at, const MotionDelta& motion, PathJacobian& J) const;
     void positionJacobian(const Local& at, const MotionDelta& motion, PathJacobian& J) const;
@@ -79,6 +82,7 @@ class SweepPath
     Pose apriori_start_;                    // (gamma, pbar) at t_{k-1}
     Matrix3d gap_rotation_;                 // R_D
     Vector3d gap_log_;                      // Log R_D
+    Vector3d gap_rate_;                     // of the rates at both ends, where they are states
     Vector3d gap_translation_;              // p_D (iterated)
     Vector3d gap_position_, gap_velocity_;  // e_p, e_v (bridge)
 };

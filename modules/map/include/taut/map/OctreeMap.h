@@ -26,6 +26,7 @@ struct OctreeMapConfig
     double max_thickness = 0.15;  //!< [m] thicker windows are no planes
     double max_flatness = 0.2;    //!< largest ratio of thickness to the smaller extent in the plane
     double min_width = 0.05;      //!< [m] deviation across a window that a normal needs
+    double min_cosine = 0.05;     //!< of the angle between the normal and the views of its points
     double min_spread = 0.2;      //!< the same as a share of the half edge of the window
     double gate = 0.8;            //!< [m] largest distance from a surface to be matched with it
     double min_sigma = 0.005;     //!< [m] no surface is believed to be thinner

@@ -79,6 +79,8 @@ class Odometry
 
  private:
     PreintegratedImu integrate(Time end, const ImuSamples* imu) const;
+    void makeRateAState();
+    void takeBiasesBack();
     SweepPath estimate(
         const Features& features, const PreintegratedImu& motion, const SweepPath& predicted,
         ScanResult& result);
@@ -100,6 +102,10 @@ class Odometry
     NavPrior previous_;
     Rest rest_;
     Vector3d previous_rate_ = Vector3d::Zero();
+    // Without an IMU the rate takes the place of the gyro's bias, which waits here.
+    bool rate_is_state_ = false;
+    Vector3d bias_gyro_ = Vector3d::Zero();
+    Matrix3d bias_gyro_covariance_ = Matrix3d::Zero();
     /** Shares of late: of the features that are matched and explained, and of the matches that are.
      * 0: not known yet. */
     double usual_inlier_share_ = 0, usual_fit_ = 0;

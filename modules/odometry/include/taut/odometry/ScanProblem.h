@@ -14,6 +14,11 @@ struct NavPrior
 {
     NavState state;
     NavState::Matrix information = NavState::Matrix::Identity();
+
+    /** Covariance of one part of the error state, given by its first row. */
+    Matrix3d covarianceOf(int part) const;
+    /** Gives one part another covariance; what tied it to the others is lost. */
+    void forget(int part, const Matrix3d& covariance);
 };
 
 /** What is known of a state without a measurement: where a body rests, or how it went on through a
