@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "simulation_support.h"
 
 using namespace taut;
@@ -107,4 +109,60 @@ TEST(Faults, ClocksJumpTogetherAndStampsRepeat)
     }
     EXPECT_NEAR(repeated, 100, 30);
     EXPECT_EQ(faults.clock(fromSeconds(7)), fromSeconds(6));
+}
+
+TEST(Faults, HostStampsAreLateByTheJitterAskedFor)
+{
+    FaultConfig config;
+    config.imu_stamps.jitter = 0.4e-3;
+    config.lidar_stamps.jitter = 3e-3;
+    Faults faults(config, 1);
+    double sum = 0, square = 0, scans = 0;
+    constexpr int count = 20000;
+    Time last = -1;
+    for (int i = 0; i < count; i++)
+    {
+        ImuSample s = sampleAt(0.01 * i);
+        ASSERT_TRUE(faults.spoil(s, i));
+        const double late = toSeconds(s.t) - 0.01 * i;
+        ASSERT_GE(late, -1e-9);
+        ASSERT_GE(s.t, last) << "who comes later is not stamped earlier";
+        last = s.t;
+        sum += late / count;
+        square += late * late / count;
+        SimulatedScan scan = scanAt(0.1 * i, 1);
+        ASSERT_TRUE(faults.spoil(scan, i));
+        scans += (toSeconds(scan.scan.stamp) - 0.1 * i) / count;
+        ASSERT_EQ(scan.scan.end - scan.scan.stamp, 100'000'000);
+    }
+    // Exponential: mean and deviation are the same.
+    EXPECT_NEAR(sum, 0.4e-3, 0.02e-3);
+    EXPECT_NEAR(std::sqrt(square - sum * sum), 0.4e-3, 0.02e-3);
+    EXPECT_NEAR(scans, 3e-3, 0.1e-3);
+}
+
+TEST(Faults, PolledStampsAreMultiplesOfTheStep)
+{
+    FaultConfig config;
+    config.imu_stamps.step = 0.016;
+    Faults faults(config, 1);
+    double sum = 0, square = 0;
+    int repeated = 0;
+    Time last = -1;
+    constexpr int count = 16000;
+    for (int i = 0; i < count; i++)
+    {
+        ImuSample s = sampleAt(0.005 * i);
+        ASSERT_TRUE(faults.spoil(s, i));
+        ASSERT_EQ(s.t % 16'000'000, 0);
+        repeated += s.t == last;
+        last = s.t;
+        const double late = toSeconds(s.t) - 0.005 * i;
+        sum += late / count;
+        square += late * late / count;
+    }
+    // Every whole millisecond from 0 to 15 is equally often late.
+    EXPECT_NEAR(sum, 7.5e-3, 1e-5);
+    EXPECT_NEAR(std::sqrt(square - sum * sum), 1e-3 * std::sqrt((16 * 16 - 1) / 12.0), 1e-5);
+    EXPECT_NEAR(repeated, count * (1 - 5.0 / 16), 2) << "several samples a poll";
 }

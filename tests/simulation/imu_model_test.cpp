@@ -174,6 +174,61 @@ TEST(ImuModel, VibrationIsHeardAndAveragedAway)
     EXPECT_NEAR(peak(config), 2, 0.01);
 }
 
+TEST(ImuModel, ItsClockMayRunTooFast)
+{
+    ImuConfig config = imuPreset(ImuPreset::Ideal);
+    config.clock_offset = -0.003;
+    config.clock_drift = 50e-6;
+    const ImuRecording imu = atRest(config, 60, 1);
+    for (std::size_t i = 0; i < imu.samples.size(); i++)
+        ASSERT_NEAR(
+            toSeconds(imu.samples[i].t - imu.times[i]), -0.003 + 50e-6 * toSeconds(imu.times[i]),
+            51e-9);
+}
+
+TEST(ImuModel, BiasesFollowTheTemperature)
+{
+    ImuConfig config = imuPreset(ImuPreset::Ideal);
+    config.rate = 20;
+    config.gyro_temperature = 2e-3;
+    config.accel_temperature = 0.01;
+    const ImuRecording cold = atRest(config, 1, 1);
+    EXPECT_EQ(cold.gyro_bias.back(), Vector3d::Zero());
+    config.warming = 8;
+    config.warming_time = 20;
+    double gyro = 0, accel = 0;
+    constexpr int units = 400;
+    for (int unit = 0; unit < units; unit++)
+    {
+        const ImuRecording imu = atRest(config, 60, static_cast<std::uint64_t>(unit));
+        const auto at = [&imu](double t) { return static_cast<std::size_t>(t * 20); };
+        const Vector3d early = imu.gyro_bias[at(20)], late = imu.gyro_bias[at(59)];
+        const double expected = (1 - std::exp(-20.025 / 20)) / (1 - std::exp(-59.025 / 20));
+        ASSERT_LT((early - expected * late).norm(), 1e-12);
+        ASSERT_LT((imu.samples[at(59)].gyro - late).norm(), 1e-12) << "it is in the reading";
+        gyro += late.squaredNorm() / 3 / units;
+        accel += imu.accel_bias[at(59)].squaredNorm() / 3 / units;
+    }
+    const double warm = 8 * (1 - std::exp(-59.025 / 20));
+    EXPECT_NEAR(std::sqrt(gyro), 2e-3 * warm, 0.05 * 2e-3 * warm);
+    EXPECT_NEAR(std::sqrt(accel), 0.01 * warm, 0.05 * 0.01 * warm);
+}
+
+TEST(ImuModel, WarmingChangesNoOtherError)
+{
+    ImuConfig config = imuPreset(ImuPreset::Consumer);
+    config.gyro_range = config.accel_range = 1e9;
+    const ImuRecording constant = atRest(config, 20, 3);
+    config.warming = 10;
+    const ImuRecording warming = atRest(config, 20, 3);
+    for (std::size_t i = 0; i < constant.samples.size(); i++)
+    {
+        const Vector3d bias = warming.gyro_bias[i] - constant.gyro_bias[i];
+        ASSERT_LT((warming.samples[i].gyro - constant.samples[i].gyro - bias).norm(), 1e-12);
+    }
+    EXPECT_GT((warming.gyro_bias.back() - constant.gyro_bias.back()).norm(), 1e-3);
+}
+
 TEST(ImuModel, PresetsAreWorseTheCheaper)
 {
     const ImuConfig tactical = imuPreset(ImuPreset::Tactical);

@@ -47,11 +47,13 @@ class Triad
  public:
     struct Errors
     {
-        double density, walk, bias, scale, misalignment, range, vibration;
+        double density, walk, bias, scale, misalignment, range, vibration, temperature;
     };
     Triad(const Errors& e, const ImuConfig& config, std::uint64_t seed, std::uint64_t stream)
         : errors_(e),
           dt_(1 / config.rate),
+          warming_(config.warming),
+          warming_time_(config.warming_time),
           frequency_(config.vibration_frequency),
           random_(seed, stream),
           bias_(e.bias * random_.normalVector()),
@@ -60,6 +62,8 @@ class Triad
         const double x = M_PI * frequency_ * dt_;
         gain_ = config.averaging && x > 0 ? std::sin(x) / x : 1;
         for (double& phase : phases_) phase = random_.uniform(0, 2 * M_PI);
+        Random coefficients(seed, stream, 1);  // apart: what is off changes nothing else
+        per_kelvin_ = e.temperature * coefficients.normalVector();
     }
 
     /** Reads a true value at time t and lets the bias walk on; bias() is that of this reading. */
@@ -70,6 +74,8 @@ class Triad
             shaken[i] +=
                 errors_.vibration * gain_ * std::sin(2 * M_PI * frequency_ * t + phases_[i]);
         read_bias_ = bias_;
+        if (warming_ != 0)
+            read_bias_ += warming_ * (1 - std::exp(-t / warming_time_)) * per_kelvin_;
         bias_ += errors_.walk * std::sqrt(dt_) * random_.normalVector();
         const Vector3d noise = errors_.density / std::sqrt(dt_) * random_.normalVector();
         return (distortion_ * shaken + read_bias_ + noise)
@@ -80,10 +86,11 @@ class Triad
 
  private:
     Errors errors_;
-    double dt_, frequency_, gain_ = 1;
+    double dt_, warming_, warming_time_, frequency_, gain_ = 1;
     Random random_;
     Vector3d bias_;
     Matrix3d distortion_;
+    Vector3d per_kelvin_;
     std::array<double, 3> phases_{};
     Vector3d read_bias_ = Vector3d::Zero();
 };
@@ -102,11 +109,13 @@ ImuRecording simulateImu(
 {
     Triad gyro(
         {config.noise.gyro, config.noise.gyro_bias_walk, config.gyro_bias, config.gyro_scale,
-         config.gyro_misalignment, config.gyro_range, config.gyro_vibration},
+         config.gyro_misalignment, config.gyro_range, config.gyro_vibration,
+         config.gyro_temperature},
         config, seed, 10);
     Triad accel(
         {config.noise.accel, config.noise.accel_bias_walk, config.accel_bias, config.accel_scale,
-         config.accel_misalignment, config.accel_range, config.accel_vibration},
+         config.accel_misalignment, config.accel_range, config.accel_vibration,
+         config.accel_temperature},
         config, seed, 11);
 
     ImuRecording recording;
@@ -118,7 +127,8 @@ ImuRecording simulateImu(
         const Duration t = kTick * static_cast<Duration>(std::llround(middle * 1e7));
         const ImuSample truth = meanImu(motion, toSeconds(t), config.averaging ? dt : 0);
         ImuSample sample;
-        sample.t = t + kTick * static_cast<Duration>(std::llround(config.clock_offset * 1e7));
+        const double ahead = config.clock_offset + config.clock_drift * toSeconds(t);
+        sample.t = t + kTick * static_cast<Duration>(std::llround(ahead * 1e7));
         sample.gyro = gyro.read(truth.gyro, toSeconds(t));
         sample.accel = accel.read(truth.accel, toSeconds(t));
         recording.samples.push_back(sample);
@@ -188,6 +198,8 @@ ImuConfig consumer()
     c.gyro_misalignment = c.accel_misalignment = 0.02 / 3;  // cross-axis sensitivity 2 %
     c.gyro_range = 2000 * kDegree;
     c.accel_range = 16 * 9.81;
+    c.gyro_temperature = 30.0 / 65 * kDegree / 3;  // 30 deg/s between 25 and -40 degrees C
+    c.accel_temperature = 1.5 * kMilliG / 3;       // 1.5 mg/K
     return c;
 }
 }  // namespace
@@ -240,6 +252,15 @@ void declare(ConfigSection& section, ImuConfig& config)
     key("gyro_range", config.gyro_range, "rad/s, saturation");
     key("accel_range", config.accel_range, "m/s^2, saturation");
     section.key("clock_offset", config.clock_offset, {-1, 1}, "s, IMU stamps against LiDAR stamps");
+    section.key(
+        "clock_drift", config.clock_drift, {-0.01, 0.01},
+        "s/s, by which the IMU's clock is too fast; 1e-6 = 1 ppm");
+    section.key("warming", config.warming, {-150, 150}, "K, in the end; 0 = constant temperature");
+    section.key("warming_time", config.warming_time, kPositive, "s, time constant of the warming");
+    key("gyro_temperature", config.gyro_temperature,
+        "rad/s/K, bias by temperature, standard deviation");
+    key("accel_temperature", config.accel_temperature,
+        "m/s^2/K, bias by temperature, standard deviation");
     key("gyro_vibration", config.gyro_vibration, "rad/s, amplitude");
     key("accel_vibration", config.accel_vibration, "m/s^2, amplitude");
     key("vibration_frequency", config.vibration_frequency, "Hz");

@@ -30,9 +30,16 @@ struct ImuConfig
     double accel_scale = 0;
     double gyro_misalignment = 0;  //!< axes against one another, standard deviation [rad]
     double accel_misalignment = 0;
-    double gyro_range = 1e9;          //!< saturation [rad/s]
-    double accel_range = 1e9;         //!< [m/s^2]
-    double clock_offset = 0;          //!< of the IMU's stamps against the LiDAR's [s]
+    double gyro_range = 1e9;   //!< saturation [rad/s]
+    double accel_range = 1e9;  //!< [m/s^2]
+    double clock_offset = 0;   //!< of the IMU's stamps against the LiDAR's [s]
+    double clock_drift = 0;    //!< by which its clock is too fast against the LiDAR's [s/s]
+    /** The sensor warms up: by warming * (1 - exp(-t / warming_time)) until t. The biases follow,
+     * on each axis by a coefficient of its own. */
+    double warming = 0;               //!< in the end [K]; < 0 cools down, 0 = constant temperature
+    double warming_time = 60;         //!< time constant [s]
+    double gyro_temperature = 0;      //!< bias a kelvin, standard deviation of each axis [rad/s/K]
+    double accel_temperature = 0;     //!< [m/s^2/K]
     double gyro_vibration = 0;        //!< amplitude of the vibration of the mount [rad/s]
     double accel_vibration = 0;       //!< [m/s^2]
     double vibration_frequency = 90;  //!< [Hz]
