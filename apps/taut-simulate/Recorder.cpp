@@ -97,7 +97,7 @@ void Recorder::writePackets(SimulatedScan& simulated, double azimuth, Duration c
     rawlog_.write(packets);
     // The truth is that of the points as the packets hold them.
     simulated.scan = decoded(packets);
-    const Scan ideal = simulator_.lidar().beamErrors().removed(simulated.scan);
+    const Scan ideal = simulator_.lidar().withoutErrors(simulated.scan, clock);
     simulated.truth = undistorted(ideal, simulator_.motion(), clock);
 }
 

@@ -122,10 +122,12 @@ TEST_F(SimulateApp, TruthOfPointsIsTheirPlaceAtTheEndOfTheScan)
     EXPECT_GT(checkPointTruth(file("log"), 2e-4), 3000U);  // interpolation between 0.5 ms
 }
 
-TEST_F(SimulateApp, TruthIsFreeOfTheErrorsOfTheBeamsInPacketsToo)
+TEST_F(SimulateApp, TruthIsFreeOfTheErrorsOfBeamsAndMountInPacketsToo)
 {
     const std::string errors =
-        "--points --quiet --set lidar.beam_error=0.002 --set lidar.range_bias=0.05";
+        "--points --quiet --set lidar.beam_error=0.002 --set lidar.range_bias=0.05 "
+        "--set lidar.mount_error.roll=3 --set lidar.mount_error.x=0.1 "
+        "--set lidar.soft_mount.frequency=30 --set lidar.soft_mount.angle=0.01";
     ASSERT_EQ(simulate(errors).exit_code, 0);
     ASSERT_EQ(simulate(errors + " --packets", "packets").exit_code, 0);
     PointTruthReader plain(file("log.points")), packets(file("packets.points"));

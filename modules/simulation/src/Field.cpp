@@ -51,6 +51,7 @@ World makeField(Random& random)
     addGround(
         world.mesh, -kHalf, -kHalf, kHalf, kHalf, 1,
         [&random](double, double) { return random.uniform(-kGrass, kGrass); }, 0.35F);
+    world.mesh.mark(0, Material::Soil);
     addRim(world.mesh, random);
     world.route = makeRoute();
     world.traffic.oncoming = 1.5;

@@ -105,6 +105,7 @@ World makeForest(Random& random)
     addGround(
         world.mesh, -kHalf, -kHalf, kHalf, kHalf, 0.4,
         [&ground](double x, double y) { return ground.height(x, y); }, 0.4F);
+    world.mesh.mark(0, Material::Soil);
     const std::vector<Vector3d> way = path(ground);
     std::vector<Vector3d> feet;
     for (int tries = 0; tries < 2500 && feet.size() < 620; tries++)

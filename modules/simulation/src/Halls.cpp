@@ -42,7 +42,7 @@ std::vector<Recess> makeWindows(const WorldConfig& config)
 {
     std::vector<Recess> recesses;
     for (double x = 0.6; x < kLength - 1; x += 1.9)
-        recesses.push_back({x, x + 1.3, 1.2, 3.4, 0.15, 0.1F});
+        recesses.push_back({x, x + 1.3, 1.2, 3.4, 0.15, 0.1F, false, true});
     glaze(recesses, config);
     return recesses;
 }

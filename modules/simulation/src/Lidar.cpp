@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "OwnBody.h"
 #include "taut/simulation/Random.h"
 
 namespace taut::simulation
@@ -12,7 +13,9 @@ namespace taut::simulation
 namespace
 {
 constexpr std::size_t kChunk = 2048;
-constexpr double kDegree = M_PI / 180;
+constexpr double kPulseLength = 0.5;        // surfaces closer than this mix [m]
+constexpr double kOwnReach = 5;             // of what carries the LiDAR [m]
+constexpr float kDropReflectivity = 0.05F;  // of a drop of rain or a grain of dust
 
 std::unique_ptr<LidarPattern> patternOf(const LidarConfig& config)
 {
@@ -51,8 +54,7 @@ std::optional<Hit> castBeam(
     const Scene& scene, double t, const Vector3d& origin, const Vector3d& direction,
     const LidarConfig& config, double turn, double radius)
 {
-    constexpr double flat = 0.01;         // off the plane of the middle [m]
-    constexpr double pulse_length = 0.5;  // surfaces closer than this mix [m]
+    constexpr double flat = 0.01;  // off the plane of the middle [m]
     const auto middle = scene.cast(t, origin, direction, config.max_range);
     if (config.divergence <= 0) return middle;
     const Vector3d u = direction.unitOrthogonal(), v = direction.cross(u);
@@ -79,7 +81,7 @@ std::optional<Hit> castBeam(
     if (!brightest) return {};
     double sum = 0, weight = 0;
     for (const auto& h : hits)
-        if (h && std::abs(h->range - (*brightest)->range) < pulse_length)
+        if (h && std::abs(h->range - (*brightest)->range) < kPulseLength)
         {
             sum += signal(*h) * h->range;
             weight += signal(*h);
@@ -91,9 +93,11 @@ std::optional<Hit> castBeam(
 
 /** Part of the shots that come back, by the light received relative to the least that is detected.
  */
-double detectionProbability(const Hit& hit, const Vector3d& direction, double detection_range)
+double detectionProbability(
+    const Hit& hit, const Vector3d& direction, double detection_range, double transmitted)
 {
-    const double signal = signalOf(hit, direction) * detection_range * detection_range;
+    const double signal =
+        signalOf(hit, direction) * detection_range * detection_range * transmitted;
     return 1 / (1 + std::pow(std::max(signal, 1e-3), -4));  // logistic in the logarithm
 }
 }  // namespace
@@ -105,12 +109,16 @@ struct Lidar::Return
     Vector3d surface;                // world frame
 };
 
-Lidar::Lidar(const LidarConfig& config, std::uint64_t seed)
+Lidar::Lidar(const LidarConfig& config, std::uint64_t seed, const WeatherConfig& weather)
     : config_(config),
+      weather_(weather),
       seed_(seed),
       pattern_(patternOf(config)),
-      beam_errors_(config, pattern_->rings(), seed)
+      beam_errors_(config, pattern_->rings(), seed),
+      mount_(config, seed)
 {
+    Mesh body = makeOwnBody(config.own_body);
+    if (!body.triangles.empty()) own_body_.emplace(std::move(body));
 }
 
 int Lidar::sweeps(double duration) const
@@ -123,10 +131,12 @@ std::vector<Lidar::Return> Lidar::castAll(
     const std::vector<Shot>& shots, int k, const Motion& motion, const Scene& scene,
     Executor& executor) const
 {
+    constexpr std::uint64_t sweeps = 1U << 20U;
     std::vector<std::vector<Return>> parts(Executor::chunks(shots.size(), kChunk));
     const auto cast = [&](std::size_t chunk, std::size_t begin, std::size_t end)
     {
         Random random(seed_, 100 + static_cast<std::uint64_t>(k), chunk);
+        Random air(seed_, 33, chunk * sweeps + static_cast<std::uint64_t>(k));
         for (std::size_t i = begin; i < end; i++)
         {
             const Shot& shot = shots[i];
@@ -135,26 +145,37 @@ std::vector<Lidar::Return> Lidar::castAll(
             const double noise = random.normal(), luck = random.uniform(), loss = random.uniform();
             const double turn = random.uniform(0, M_PI), radius = std::sqrt(random.uniform());
             const double t = toSeconds(kStart + shot.t);
-            const Pose T = motion.poseAt(t) * config_.T_imu_lidar;
-            const Vector3d direction = T.R * beam_errors_.looking(shot.direction, shot.ring);
+            const std::optional<double> drop = nearReturn(weather_, air);
+            const Pose T = motion.poseAt(t) * mount_.at(t);
+            const Vector3d looking = beam_errors_.looking(shot.direction, shot.ring);
+            const Vector3d direction = T.R * looking;
             const Vector3d origin = T * shot.origin;
-            const auto hit = castBeam(scene, t, origin, direction, config_, turn, radius);
+            auto hit = castBeam(scene, t, origin, direction, config_, turn, radius);
+            if (own_body_)
+            {
+                auto own = own_body_->cast(shot.origin, looking, hit ? hit->range : kOwnReach);
+                if (own) own->normal = T.R * own->normal;
+                if (own) hit = own;
+            }
+            const bool by_drop = drop && *drop >= config_.min_range &&
+                                 *drop < (hit ? hit->range : config_.max_range);
+            if (by_drop) hit = Hit{*drop, -direction, kDropReflectivity};
             if (!hit || loss < config_.dropout) continue;
-            if (config_.detection_range > 0 &&
-                luck > detectionProbability(*hit, direction, config_.detection_range))
+            const double through = transmitted(weather_, hit->range);
+            if (config_.detection_range > 0 && !by_drop &&
+                luck > detectionProbability(*hit, direction, config_.detection_range, through))
                 continue;
-            double range = hit->range + beam_errors_.range(shot.ring) + config_.range_noise * noise;
-            if (config_.range_step > 0)
-                range = config_.range_step * std::round(range / config_.range_step);
+            const double cosine = -hit->normal.dot(direction);
+            const double light = std::clamp(cosine * hit->reflectivity, 0.0, 1.0) * through;
+            const double range = rangeOf(*hit, shot, noise, light, cosine);
             if (range < config_.min_range || range > config_.max_range) continue;
 
             Return r;
             r.point.position = (shot.origin + range * shot.direction).cast<float>();
-            r.point.intensity = static_cast<float>(std::round(
-                255 * std::clamp(-hit->normal.dot(direction) * hit->reflectivity, 0.0, 1.0)));
+            r.point.intensity = static_cast<float>(std::round(255 * light));
             r.point.offset = static_cast<std::int32_t>(shot.t - shots.front().t);
             r.point.ring = shot.ring;
-            r.without_errors = beam_errors_.removed(r.point, shot.origin);
+            r.without_errors = mount_.corrected(beam_errors_.removed(r.point, shot.origin), t);
             r.surface = origin + hit->range * direction;
             parts[chunk].push_back(r);
         }
@@ -166,11 +187,47 @@ std::vector<Lidar::Return> Lidar::castAll(
     return all;
 }
 
+double Lidar::rangeOf(
+    const Hit& hit, const Shot& shot, double noise, double light, double cosine) const
+{
+    double range = hit.range + beam_errors_.range(shot.ring) + config_.range_noise * noise;
+    range += config_.intensity_error * (1 - light);
+    if (config_.incidence_error != 0)
+    {
+        const double c = std::clamp(cosine, 1e-3, 1.0);
+        const double depth = hit.range * std::sqrt(1 - c * c) / c * config_.divergence;
+        range += config_.incidence_error * std::min(depth, kPulseLength) / 2;
+    }
+    if (config_.range_step > 0) range = config_.range_step * std::round(range / config_.range_step);
+    return range;
+}
+
+void Lidar::losePackets(std::vector<Return>& returns, int k) const
+{
+    if (config_.packet_loss.share <= 0) return;
+    const Duration packet = pattern_->packet();
+    Random random(seed_, 32, static_cast<std::uint64_t>(k));
+    const auto packets = static_cast<std::size_t>(pattern_->period() / packet + 2);
+    const std::vector<bool> lost = lostPackets(config_.packet_loss, packets, random);
+    const auto isLost = [&](const Return& r)
+    { return lost[static_cast<std::size_t>(r.point.offset / packet)]; };
+    returns.erase(std::remove_if(returns.begin(), returns.end(), isLost), returns.end());
+}
+
+Scan Lidar::withoutErrors(Scan recorded, Duration clock) const
+{
+    recorded = beam_errors_.removed(std::move(recorded));
+    for (LidarPoint& p : recorded.points)
+        p.position = mount_.corrected(p.position, toSeconds(recorded.timeOf(p) - clock));
+    return recorded;
+}
+
 SimulatedScan Lidar::sweep(
     int k, const Motion& motion, const Scene& scene, Executor& executor) const
 {
     const std::vector<Shot> shots = pattern_->sweep(k);
-    const std::vector<Return> returns = castAll(shots, k, motion, scene, executor);
+    std::vector<Return> returns = castAll(shots, k, motion, scene, executor);
+    losePackets(returns, k);
 
     SimulatedScan result;
     Scan& scan = result.scan;
@@ -265,9 +322,7 @@ void declare(ConfigSection& section, LidarConfig& config)
          {"OS1-128", LidarType::Os1_128},
          {"rosette", LidarType::Rosette}},
         "sensor that the other keys change; rosette = Livox-like");
-    const Pose T_imu_lidar = config.T_imu_lidar;
     config = lidarPreset(config.type);
-    config.T_imu_lidar = T_imu_lidar;
     section.key("rotation_rate", config.rotation_rate, {1, 30}, "Hz, sweeps a second");
     section.key("min_range", config.min_range, kNotNegative, "m");
     section.key("max_range", config.max_range, kPositive, "m");
@@ -286,19 +341,24 @@ void declare(ConfigSection& section, LidarConfig& config)
         "beam_range_error", config.beam_range_error, kNotNegative,
         "m, of the ranges of each ring, standard deviation");
     section.key("range_bias", config.range_bias, kAnyNumber, "m, of all ranges; > 0 = too long");
-
-    Vector3d angles(0.8, -1.4, 3.0);  // degrees: no mount is perfect
-    Vector3d p(0.04, -0.03, 0.12);
-    ConfigSection& mount = section.section("mount");
-    mount.key("x", p.x(), kAnyNumber, "m, LiDAR in the IMU frame");
-    mount.key("y", p.y(), kAnyNumber, "m");
-    mount.key("z", p.z(), kAnyNumber, "m");
-    mount.key("roll", angles.x(), {-180, 180}, "degrees");
-    mount.key("pitch", angles.y(), {-180, 180}, "degrees");
-    mount.key("yaw", angles.z(), {-180, 180}, "degrees; applied first yaw, then pitch, then roll");
-    config.T_imu_lidar.p = p;
-    config.T_imu_lidar.R = expSO3(Vector3d(0, 0, angles.z() * kDegree)) *
-                           expSO3(Vector3d(0, angles.y() * kDegree, 0)) *
-                           expSO3(Vector3d(angles.x() * kDegree, 0, 0));
+    section.key(
+        "intensity_error", config.intensity_error, {-1, 1},
+        "m, by which a black surface is measured longer than a white one");
+    section.key(
+        "incidence_error", config.incidence_error, {-1, 1},
+        "part of half the depth of the footprint by which slanting surfaces are measured longer");
+    section.choice<OwnBody>(
+        "own_body", config.own_body,
+        {{"none", OwnBody::None},
+         {"person", OwnBody::Person},
+         {"car", OwnBody::Car},
+         {"multicopter", OwnBody::Multicopter}},
+        "what carries the LiDAR and stands in its view");
+    declare(section.section("packet_loss"), config.packet_loss);
+    declare(section.section("soft_mount"), config.soft_mount);
+    // No mount is perfect.
+    config.T_imu_lidar =
+        declarePose(section.section("mount"), {0.04, -0.03, 0.12}, {0.8, -1.4, 3.0});
+    config.mount_error = declarePose(section.section("mount_error"), {0, 0, 0}, {0, 0, 0});
 }
 }  // namespace taut::simulation

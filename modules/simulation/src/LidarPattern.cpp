@@ -19,11 +19,13 @@ class SpinningPattern : public LidarPattern
 {
  public:
     SpinningPattern(
-        std::vector<Laser> lasers, double firing_period, double rotation_rate, double beam_origin)
+        std::vector<Laser> lasers, double firing_period, double rotation_rate, double beam_origin,
+        int packet_firings)
         : lasers_(std::move(lasers)),
           firing_period_(firing_period),
           rate_(rotation_rate),
-          beam_origin_(beam_origin)
+          beam_origin_(beam_origin),
+          packet_firings_(packet_firings)
     {
     }
 
@@ -51,11 +53,13 @@ class SpinningPattern : public LidarPattern
         return shots;
     }
     Duration period() const override { return fromSeconds(1 / rate_); }
+    Duration packet() const override { return fromSeconds(packet_firings_ * firing_period_); }
     int rings() const override { return static_cast<int>(lasers_.size()); }
 
  private:
     std::vector<Laser> lasers_;
     double firing_period_, rate_, beam_origin_;
+    int packet_firings_;
 };
 
 class RosettePattern : public LidarPattern
@@ -89,9 +93,11 @@ class RosettePattern : public LidarPattern
     {
         return fromSeconds(static_cast<double>(shots_) / kPointRate);
     }
+    Duration packet() const override { return fromSeconds(kPacket / kPointRate); }
     int rings() const override { return 0; }
 
  private:
+    static constexpr double kPacket = 96;                                            // points
     static constexpr double kPointRate = 100000;                                     // [1/s]
     static constexpr double kFirstPrism = 7294.0 / 60, kSecondPrism = -4664.0 / 60;  // [Hz]
     static constexpr double kBend = 70.4 / 4 * kDegree;  // of each prism
@@ -100,13 +106,14 @@ class RosettePattern : public LidarPattern
 }  // namespace
 
 std::unique_ptr<LidarPattern> makeSpinningPattern(
-    std::vector<Laser> lasers, double firing_period, double rotation_rate, double beam_origin)
+    std::vector<Laser> lasers, double firing_period, double rotation_rate, double beam_origin,
+    int packet_firings)
 {
     if (lasers.empty() || !(firing_period > 0) || !(rotation_rate > 0) ||
         rotation_rate * firing_period > 0.5)
         throw std::invalid_argument("a spinning LiDAR needs lasers, and several firings a turn");
     return std::make_unique<SpinningPattern>(
-        std::move(lasers), firing_period, rotation_rate, beam_origin);
+        std::move(lasers), firing_period, rotation_rate, beam_origin, packet_firings);
 }
 
 std::unique_ptr<LidarPattern> makeVlp16Pattern(double rotation_rate)
@@ -117,7 +124,7 @@ std::unique_ptr<LidarPattern> makeVlp16Pattern(double rotation_rate)
         const double elevation = i % 2 == 0 ? -15 + i : i;
         lasers.push_back({elevation * kDegree, 0, 2.304e-6 * i});
     }
-    return makeSpinningPattern(std::move(lasers), 55.296e-6, rotation_rate);
+    return makeSpinningPattern(std::move(lasers), 55.296e-6, rotation_rate, 0, 24);
 }
 
 std::unique_ptr<LidarPattern> makeHdl32Pattern(double rotation_rate)
@@ -128,7 +135,7 @@ std::unique_ptr<LidarPattern> makeHdl32Pattern(double rotation_rate)
         const int row = i % 2 == 0 ? i / 2 : 16 + i / 2;  // from below
         lasers.push_back({(-92.0 + 4 * row) / 3 * kDegree, 0, 1.152e-6 * i});
     }
-    return makeSpinningPattern(std::move(lasers), 46.08e-6, rotation_rate);
+    return makeSpinningPattern(std::move(lasers), 46.08e-6, rotation_rate, 0, 12);
 }
 
 std::unique_ptr<LidarPattern> makeHdl64Pattern(double rotation_rate)
@@ -141,7 +148,7 @@ std::unique_ptr<LidarPattern> makeHdl64Pattern(double rotation_rate)
         lasers.push_back({(2 - i / 3.0) * kDegree, 0, delay});
         lasers.push_back({(-8.83 - i / 2.0) * kDegree, 0, delay});
     }
-    return makeSpinningPattern(std::move(lasers), sequence, rotation_rate);
+    return makeSpinningPattern(std::move(lasers), sequence, rotation_rate, 0, 6);
 }
 
 std::unique_ptr<LidarPattern> makeOs1Pattern(int rows, double rotation_rate)
@@ -155,7 +162,7 @@ std::unique_ptr<LidarPattern> makeOs1Pattern(int rows, double rotation_rate)
     }
     return makeSpinningPattern(
         std::move(lasers), 1 / (1024 * rotation_rate), rotation_rate,
-        rows == 64 ? 12.163e-3 : 15.806e-3);
+        rows == 64 ? 12.163e-3 : 15.806e-3, 16);
 }
 
 std::unique_ptr<LidarPattern> makeRosettePattern(double sweep_rate)

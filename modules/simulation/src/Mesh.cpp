@@ -20,8 +20,19 @@ void addTriangle(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, 
 }
 }  // namespace
 
+void Mesh::mark(std::size_t first, Material material)
+{
+    materials.resize(first, Material::Solid);
+    materials.resize(triangles.size(), material);
+}
+
 void Mesh::append(const Mesh& other, const Pose& T)
 {
+    if (!other.materials.empty())
+    {
+        materials.resize(triangles.size(), Material::Solid);
+        materials.insert(materials.end(), other.materials.begin(), other.materials.end());
+    }
     const auto shift = static_cast<std::uint32_t>(vertices.size());
     for (const Vector3d& v : other.vertices) vertices.push_back(T * v);
     for (const Triangle& t : other.triangles)
@@ -162,9 +173,11 @@ void addWall(
                 at(a[0], r.depth, a[1]), reflectivity);
         }
         if (r.open) continue;
+        const std::size_t back = mesh.triangles.size();
         addQuad(
             mesh, at(r.left, r.depth, r.bottom), at(r.right, r.depth, r.bottom),
             at(r.right, r.depth, r.top), at(r.left, r.depth, r.top), r.reflectivity);
+        if (r.window) mesh.mark(back, Material::Pane);
     }
 }
 

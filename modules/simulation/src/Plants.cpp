@@ -8,6 +8,7 @@ void addLeaves(
     Mesh& mesh, const Vector3d& center, const Vector3d& radii, int count, double edge,
     Random& random)
 {
+    const std::size_t first = mesh.triangles.size();
     for (int i = 0; i < count; i++)
     {
         const Vector3d direction = random.normalVector().normalized();
@@ -18,6 +19,7 @@ void addLeaves(
         mesh.triangles.push_back({n - 3, n - 2, n - 1});
         mesh.reflectivity.push_back(static_cast<float>(random.uniform(0.3, 0.6)));
     }
+    mesh.mark(first, Material::Leaf);
 }
 
 void addTree(Mesh& mesh, const Vector3d& foot, const Tree& tree, Random& random)

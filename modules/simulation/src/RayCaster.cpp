@@ -131,6 +131,7 @@ std::optional<Hit> RayCaster::cast(
     hit.range = hit.normal.dot(a - origin) / cosine;
     if (!(hit.range > 0 && hit.range <= max_range)) return {};
     hit.reflectivity = scene_->mesh.reflectivity[hit.triangle];
+    hit.material = scene_->mesh.materialOf(hit.triangle);
     return hit;
 }
 

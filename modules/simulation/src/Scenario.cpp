@@ -22,6 +22,45 @@ void put(YamlNode& root, const std::string& setting)
         throw ConfigError("setting '" + setting + "': " + e.what());
     }
 }
+
+/** A fault that cannot show in the rest of the scenario is a mistake. */
+void checkTogether(const Scenario& s)
+{
+    const auto check = [](bool good, const std::string& key, const std::string& why)
+    {
+        if (!good) throw ConfigError("configuration key '" + key + "': " + why);
+    };
+    const bool has_route = s.motion.type != MotionPreset::Replay;
+    check(
+        has_route || s.world.moving == 0, "world.moving",
+        "a replayed motion has no route for others");
+    check(
+        has_route || s.world.companions.ahead + s.world.companions.beside == 0, "world.companions",
+        "a replayed motion has no route for others");
+    check(
+        s.imu.warming == 0 || s.imu.gyro_temperature > 0 || s.imu.accel_temperature > 0,
+        "imu.warming",
+        "no bias of this IMU depends on the temperature: give imu.gyro_temperature or "
+        "imu.accel_temperature");
+    check(
+        s.lidar.incidence_error == 0 || s.lidar.divergence > 0, "lidar.incidence_error",
+        "a beam without width (lidar.divergence) has no such error");
+    check(
+        extinction(s.weather) == 0 || s.lidar.detection_range > 0, "weather",
+        "rain and dust take light, but all shots return whatever their light "
+        "(lidar.detection_range: 0)");
+    const PacketLoss& loss = s.lidar.packet_loss;
+    check(
+        loss.share <= loss.burst / (1 + loss.burst), "lidar.packet_loss.share",
+        "so many are lost only if bursts are longer (lidar.packet_loss.burst)");
+    const SoftMount& mount = s.lidar.soft_mount;
+    check(
+        mount.frequency > 0 || (mount.angle == 0 && mount.displacement == 0),
+        "lidar.soft_mount.frequency", "a mount that vibrates needs one");
+    check(
+        s.lidar.min_range < s.lidar.max_range, "lidar.min_range",
+        "nothing is between it and lidar.max_range");
+}
 }  // namespace
 
 ConfigSection loadScenarioFile(const std::string& path, const std::vector<std::string>& settings)
@@ -43,12 +82,11 @@ Scenario readScenario(ConfigSection& section)
     declare(section.section("lidar"), s.lidar);
     declare(section.section("imu"), s.imu);
     declare(section.section("faults"), s.faults);
+    declare(section.section("weather"), s.weather);
     section.key(
         "clearance", s.clearance, kNotNegative, "m, of the body from every surface at the least");
     section.rejectUnknown();
-    if (s.motion.type == MotionPreset::Replay && s.world.moving > 0)
-        throw ConfigError(
-            "configuration key 'world.moving': a replayed motion has no route for others");
+    checkTogether(s);
     return s;
 }
 }  // namespace taut::simulation

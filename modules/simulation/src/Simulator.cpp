@@ -11,7 +11,12 @@ Simulator::Stage Simulator::makeStage(
     const auto seed = static_cast<std::uint64_t>(scenario.seed);
     const MotionConfig& motion = scenario.motion;
     World world = makeWorld(scenario.world);
-    Scene scene{RayCaster(std::move(world.mesh)), {}};
+    const Wind& wind = scenario.world.wind;
+    std::vector<Foliage> foliage;
+    if (wind.sway > 0) foliage = takeLeaves(world.mesh, wind, seed);
+    Texture texture = scenario.world.texture;
+    texture.seed = static_cast<std::uint64_t>(scenario.world.seed);
+    Scene scene{RayCaster(std::move(world.mesh)), {}, std::move(foliage), texture};
     if (motion.type == MotionPreset::Replay)
         return {
             std::move(scene),
@@ -19,6 +24,8 @@ Simulator::Stage Simulator::makeStage(
                 recording, motion.replay, motion.knot_spacing, scenario.duration, scenario.rest)};
     const Course course = makeCourse(motion, world.route, scenario.duration, scenario.rest);
     scene.movers = makeTraffic(world.traffic, course, scenario.world.moving, seed);
+    for (Mover& companion : makeCompanions(scenario.world.companions, course, seed))
+        scene.movers.push_back(std::move(companion));
     return {std::move(scene), makeMotion(motion, course, seed)};
 }
 
@@ -33,7 +40,7 @@ Simulator::Simulator(const Scenario& scenario, Stage stage)
       motion_(std::move(stage.motion)),
       imu_(simulateImu(
           scenario.imu, motion_, scenario.duration, static_cast<std::uint64_t>(scenario.seed))),
-      lidar_(scenario.lidar, static_cast<std::uint64_t>(scenario.seed))
+      lidar_(scenario.lidar, static_cast<std::uint64_t>(scenario.seed), scenario.weather)
 {
     checkClearance();
 }

@@ -19,7 +19,8 @@ void addShaft(Mesh& mesh)
         doors.push_back({kHalfWidth - 0.5, kHalfWidth + 0.5, z + 0.01, z + 2.1, 0.12, 0.3F});
         if (storey == kStoreys) break;
         const double sill = z + kHalfStorey + 1.0;
-        windows.push_back({kHalfWidth - 0.7, kHalfWidth + 0.7, sill, sill + 1.2, 0.25, 0.1F});
+        windows.push_back(
+            {kHalfWidth - 0.7, kHalfWidth + 0.7, sill, sill + 1.2, 0.25, 0.1F, false, true});
     }
     const auto turned = [](double yaw) { return expSO3(Vector3d(0, 0, yaw)); };
     addWall(mesh, {turned(M_PI / 2), {0, -kHalfWidth, 0}}, 2 * kHalfWidth, height, doors, 0.7F);

@@ -38,7 +38,7 @@ std::vector<Recess> makeWindows(double length, const WorldConfig& config, int wa
 {
     std::vector<Recess> recesses;
     for (double x = 2; x + 1.4 < length - 1; x += 3)
-        recesses.push_back({x, x + 1.4, 0.9, 2.1, 0.06, 0.1F});
+        recesses.push_back({x, x + 1.4, 0.9, 2.1, 0.06, 0.1F, false, true});
     glaze(recesses, config, wall);
     return recesses;
 }

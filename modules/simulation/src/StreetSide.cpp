@@ -29,7 +29,7 @@ void addBuilding(Mesh& mesh, const StreetSide& side, double s, double width, Ran
             const bool is_door = floor == 0 && c == door;
             recesses.push_back(
                 {left, left + opening, is_door ? z + 0.05 : z + sill, z + 2.3,
-                 is_door ? 0.35 : 0.15, 0.15F});
+                 is_door ? 0.35 : 0.15, 0.15F, false, !is_door});
         }
     // frame() may run against the side: then the facade spans [s, s + width] backwards.
     Pose T = side.frame(s, kFacade + set_back);

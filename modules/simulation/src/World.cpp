@@ -25,6 +25,42 @@ Route parseRoute(const WorldConfig& config)
     }
     return route;
 }
+
+void declareSurfaces(ConfigSection& section, WorldConfig& config, bool soil, bool leaves)
+{
+    Texture& texture = config.texture;
+    section.key(
+        "roughness", texture.roughness, {0, 0.5},
+        "m, heights over what is solid, standard deviation");
+    section.key(
+        "roughness_length", texture.roughness_length, {1e-3, 10}, "m, over which they change");
+    if (soil)
+    {
+        section.key("grass", texture.grass, {0, 3}, "m, its height");
+        section.key(
+            "grass_path", texture.grass_path, {1e-3, 100},
+            "m, mean way of light in it until a blade is met");
+    }
+    if (!leaves) return;
+    ConfigSection& wind = section.section("wind");
+    wind.key("sway", config.wind.sway, {0, 2}, "m, amplitude of the leaves");
+    wind.key("frequency", config.wind.frequency, {0.01, 20}, "Hz");
+}
+
+/** Makes a share of the panes mirrors. Each is drawn by its number, apart from all else. */
+void silver(Mesh& mesh, const WorldConfig& config)
+{
+    constexpr std::size_t triangles = 2;  // of a pane
+    std::size_t panes = 0;
+    for (std::size_t i = 0; i < mesh.materials.size(); i++)
+    {
+        if (mesh.materials[i] != Material::Pane) continue;
+        Random random(static_cast<std::uint64_t>(config.seed), 6, panes++ / triangles);
+        mesh.materials[i] = random.uniform() < config.mirrors ? Material::Mirror : Material::Solid;
+    }
+}
+
+World build(const WorldConfig& config);
 }  // namespace
 
 void declare(ConfigSection& section, WorldConfig& config)
@@ -56,6 +92,19 @@ void declare(ConfigSection& section, WorldConfig& config)
     }
     if (isOneOf({WorldType::Storeys, WorldType::Halls}))
         section.key("glass", config.glass, {0, 1}, "share of windows that give no return");
+    if (isOneOf(
+            {WorldType::Storeys, WorldType::Halls, WorldType::Stairwell, WorldType::Street,
+             WorldType::Blocks}))
+        section.key("mirrors", config.mirrors, {0, 1}, "share of the other windows that mirror");
+    declareSurfaces(
+        section, config, isOneOf({WorldType::Forest, WorldType::Field}),
+        isOneOf({WorldType::Forest, WorldType::Field, WorldType::Street, WorldType::Blocks}));
+    ConfigSection& companions = section.section("companions");
+    companions.key("ahead", config.companions.ahead, {0, 5}, "people who walk before the body");
+    companions.key("beside", config.companions.beside, {0, 5}, "people who walk at its sides");
+    companions.key(
+        "distance", config.companions.distance, {0.5, 20},
+        "m, of the nearest ahead; half of it beside");
     if (config.type == WorldType::Halls)
         section.key("distinct", config.distinct, {0, 6}, "objects in each hall, not in the others");
     if (config.type == WorldType::Tunnel)
@@ -68,6 +117,15 @@ void declare(ConfigSection& section, WorldConfig& config)
 }
 
 World makeWorld(const WorldConfig& config)
+{
+    World world = build(config);
+    silver(world.mesh, config);
+    return world;
+}
+
+namespace
+{
+World build(const WorldConfig& config)
 {
     Random random(static_cast<std::uint64_t>(config.seed), 2);
     switch (config.type)
@@ -97,4 +155,5 @@ World makeWorld(const WorldConfig& config)
     }
     return {loadMesh(config.file, static_cast<float>(config.reflectivity)), parseRoute(config), {}};
 }
+}  // namespace
 }  // namespace taut::simulation

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "taut/core/Config.h"
@@ -11,7 +12,10 @@
 #include "taut/simulation/BeamErrors.h"
 #include "taut/simulation/LidarPattern.h"
 #include "taut/simulation/Motion.h"
+#include "taut/simulation/Mount.h"
+#include "taut/simulation/PacketLoss.h"
 #include "taut/simulation/Scene.h"
+#include "taut/simulation/Weather.h"
 
 namespace taut::simulation
 {
@@ -23,6 +27,15 @@ enum class LidarType
     Os1_64,
     Os1_128,
     Rosette,  //!< Livox-like
+};
+
+/** What carries the LiDAR and stands in its view. */
+enum class OwnBody
+{
+    None,
+    Person,       //!< somebody who holds it before the chest
+    Car,          //!< on the roof
+    Multicopter,  //!< under it, upside down
 };
 
 /** What a LiDAR measures, and how well. */
@@ -41,7 +54,17 @@ struct LidarConfig
     double beam_error = 0;        //!< of the elevation of each ring, standard deviation [rad]
     double beam_range_error = 0;  //!< of the ranges of each ring, standard deviation [m]
     double range_bias = 0;        //!< of all ranges; > 0 measures long [m]
-    Pose T_imu_lidar;
+    /** Ranges that depend on what is met. The darker, the longer: by so much where no light comes
+     * back, by nothing at a white surface head-on [m]. */
+    double intensity_error = 0;
+    /** Part of half the depth of the footprint, range * tan(incidence) * divergence / 2 and at most
+     * 0.25 m, by which ranges are too long; < 0 = too short. */
+    double incidence_error = 0;
+    PacketLoss packet_loss;
+    OwnBody own_body = OwnBody::None;
+    Pose T_imu_lidar;  //!< as the recording tells
+    Pose mount_error;  //!< frame of the true LiDAR in that of T_imu_lidar
+    SoftMount soft_mount;
 };
 
 LidarConfig lidarPreset(LidarType type);
@@ -52,7 +75,8 @@ struct SimulatedScan
 {
     Scan scan;  //!< stamp: time of the first shot of the sweep; times since the start of the
                 //!< simulation
-    /** undistorted(), without the BeamErrors; range noise stays in it. */
+    /** undistorted(), without the errors of beams and mount; whatever else changes a range stays in
+     * it, as the noise does. */
     std::vector<Eigen::Vector3f> truth;
     /** What the middle of the beam met, world frame, at the time of the point. */
     std::vector<Vector3d> surface;
@@ -67,7 +91,7 @@ std::vector<Eigen::Vector3f> undistorted(
 class Lidar
 {
  public:
-    Lidar(const LidarConfig& config, std::uint64_t seed);
+    Lidar(const LidarConfig& config, std::uint64_t seed, const WeatherConfig& weather = {});
 
     /** Number of whole sweeps in [0, duration]; the first starts at kStart. */
     int sweeps(double duration) const;
@@ -77,6 +101,11 @@ class Lidar
     SimulatedScan sweep(int k, const Motion& motion, const Scene& scene, Executor& executor) const;
 
     const BeamErrors& beamErrors() const { return beam_errors_; }
+    const Mount& mount() const { return mount_; }
+
+    /** Where recorded points would be without the errors of beams and mount. The scan's times are
+     * ahead of the motion's by `clock`; its beams start in the sensor's origin. */
+    Scan withoutErrors(Scan recorded, Duration clock) const;
 
     static constexpr Duration kStart = 20'000'000;  //!< the IMU is there first [ns]
 
@@ -86,9 +115,16 @@ class Lidar
         const std::vector<Shot>& shots, int k, const Motion& motion, const Scene& scene,
         Executor& executor) const;
 
+    double rangeOf(
+        const Hit& hit, const Shot& shot, double noise, double light, double cosine) const;
+    void losePackets(std::vector<Return>& returns, int k) const;
+
     LidarConfig config_;
+    WeatherConfig weather_;
     std::uint64_t seed_;
     std::unique_ptr<LidarPattern> pattern_;
     BeamErrors beam_errors_;
+    Mount mount_;
+    std::optional<RayCaster> own_body_;
 };
 }  // namespace taut::simulation

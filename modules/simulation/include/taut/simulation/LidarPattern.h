@@ -27,6 +27,7 @@ class LidarPattern
     /** The shots of sweep k = 0, 1, ..., in the order of time; sweeps do not overlap in time. */
     virtual std::vector<Shot> sweep(int k) const = 0;
     virtual Duration period() const = 0;  //!< of a sweep [ns]
+    virtual Duration packet() const = 0;  //!< of the shots that one packet holds [ns]
     virtual int rings() const = 0;        //!< 0 if it has none
 };
 
@@ -39,9 +40,11 @@ struct Laser
 };
 
 /** A head that turns clockwise, seen from above, and starts at +x: azimuth a looks at (cos a, -sin
- * a). The beams start `beam_origin` [m] off the axis, where the head looks to. */
+ * a). The beams start `beam_origin` [m] off the axis, where the head looks to. A packet holds
+ * `packet_firings` sequences. */
 std::unique_ptr<LidarPattern> makeSpinningPattern(
-    std::vector<Laser> lasers, double firing_period, double rotation_rate, double beam_origin = 0);
+    std::vector<Laser> lasers, double firing_period, double rotation_rate, double beam_origin = 0,
+    int packet_firings = 1);
 
 /** Velodyne VLP-16: 16 lasers in the order of firing. User Manual 63-9243: 2.304 us a laser, 55.296
  * us a firing sequence, elevations -15 1 -13 3 ... -1 15 degrees. */

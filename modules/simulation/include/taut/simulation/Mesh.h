@@ -10,6 +10,16 @@
 
 namespace taut::simulation
 {
+/** What a surface is of, where it matters. */
+enum class Material : std::uint8_t
+{
+    Solid,
+    Soil,    //!< grass may grow on it
+    Leaf,    //!< moves in the wind
+    Pane,    //!< of a window: may become a mirror, else it is solid
+    Mirror,  //!< shows what is before it, as if it were behind it
+};
+
 /** Triangles with the share of light that each reflects. */
 struct Mesh
 {
@@ -17,9 +27,17 @@ struct Mesh
     std::vector<Vector3d> vertices;  //!< [m]
     std::vector<Triangle> triangles;
     std::vector<float> reflectivity;  //!< of each triangle, 0..1
+    std::vector<Material> materials;  //!< of the first triangles; the others are solid
 
     /** Adds another mesh, moved by T. */
     void append(const Mesh& other, const Pose& T = {});
+
+    /** Makes all triangles from `first` on of a material. */
+    void mark(std::size_t first, Material material);
+    Material materialOf(std::size_t triangle) const
+    {
+        return triangle < materials.size() ? materials[triangle] : Material::Solid;
+    }
 };
 
 /** A flat four-sided patch with the corners in order around it. */
@@ -55,7 +73,8 @@ struct Recess
     double bottom = 0, top = 0;  //!< over its lower edge [m]
     double depth = 0;            //!< [m]
     float reflectivity = 0.5F;
-    bool open = false;  //!< nothing at its back: a doorway
+    bool open = false;    //!< nothing at its back: a doorway
+    bool window = false;  //!< its back is a pane
 };
 
 /** An upright wall with recesses that do not overlap. In the frame of T the wall spans x in [0,

@@ -15,6 +15,7 @@ struct Hit
     Vector3d normal = Vector3d::UnitZ();  //!< unit, towards the origin of the ray
     float reflectivity = 0;
     std::uint32_t triangle = 0;
+    Material material = Material::Solid;
 };
 
 /** Ray casting in a mesh (Embree). The triangle is found in single precision and then intersected

@@ -24,6 +24,7 @@ struct Scenario
     LidarConfig lidar;
     ImuConfig imu;
     FaultConfig faults;
+    WeatherConfig weather;
     double clearance =
         0.25;  //!< of the body from every surface: a motion that comes closer is refused [m]
 };

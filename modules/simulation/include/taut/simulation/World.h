@@ -24,14 +24,42 @@ enum class WorldType
     MeshFile,   //!< a PLY or OBJ file
 };
 
+/** Surfaces that are not as smooth and hard as triangles. */
+struct Texture
+{
+    std::uint64_t seed = 0;
+    double roughness = 0;           //!< heights over all that is solid, standard deviation [m]
+    double roughness_length = 0.1;  //!< over which they change [m]
+    double grass = 0;               //!< its height over soil [m]
+    double grass_path = 0.2;        //!< mean way of light in it until a blade is met [m]
+};
+
+/** Leaves sway in it: sinusoids along x and y, a quarter of all leaves with the same phases. */
+struct Wind
+{
+    double sway = 0;         //!< amplitude [m]
+    double frequency = 0.4;  //!< [Hz]
+};
+
+/** People who walk with the body. They shift about while it rests. */
+struct Companions
+{
+    int ahead = 0, beside = 0;  //!< number of them
+    double distance = 1.5;      //!< of the nearest ahead [m]; half of it: of the nearest beside
+};
+
 struct WorldConfig
 {
     WorldType type = WorldType::Hall;
-    int seed = 1;               //!< of what is placed at random
-    int moving = 0;             //!< number of people or cars that move
-    double moved = 0;           //!< share of furniture or parked cars that stand elsewhere, 0..1
-    int moved_seed = 1;         //!< of what stands elsewhere, and where; all else stays as it is
-    double glass = 0;           //!< share of windows that give no return, 0..1
+    int seed = 1;        //!< of what is placed at random
+    int moving = 0;      //!< number of people or cars that move
+    double moved = 0;    //!< share of furniture or parked cars that stand elsewhere, 0..1
+    int moved_seed = 1;  //!< of what stands elsewhere, and where; all else stays as it is
+    double glass = 0;    //!< share of windows that give no return, 0..1
+    double mirrors = 0;  //!< share of the other windows that mirror, 0..1
+    Texture texture;
+    Wind wind;
+    Companions companions;
     int distinct = 0;           //!< for Halls: objects in each that the others do not have
     bool refuges = false;       //!< for Tunnel: recesses 0.4 m deep every 50 m in both walls
     std::string file;           //!< for MeshFile
