@@ -5,17 +5,25 @@ bin=${TAUT_BIN:-$root/build/release/bin}
 data=${TAUT_DATA:-$root/../shared/data}
 modes="none rotation imu iterated-imu iterated bridge"
 ablations="default fewer loose unrefined nlopt lines fixed kdtree paper"
+reality="default calibrated paper"
 rest=2 # s, at the start of the sweeps: for the initialisation; not scored
 head="group,case,axis,level,seed,variant,status,ate_mm,ate_max_mm,rotation_deg,points_mm,points_max_mm,iterations,ms"
 
 # Each beam looks 0.1 degrees aside and measures 1.5 cm wrong, all of them 1 cm (standard deviations).
 beam_errors=(--set lidar.beam_error=0.0017 --set lidar.beam_range_error=0.015 --set lidar.range_bias=0.01)
 
+# What of a scenario a calibration would take away: the same drive with all of it right.
+calibrated=()
+for key in mount_error.{x,y,z,roll,pitch,yaw} beam_error beam_range_error range_bias intensity_error incidence_error; do
+  calibrated+=(--set "lidar.$key=0")
+done
+calibrated+=(--set imu.clock_offset=0 --set imu.clock_drift=0)
+
 # The options of taut-slam for a variant of the method.
 options_of() {
   [ "$1" = paper ] || echo "-c $root/config/default.yaml"
   case $1 in
-    default) ;;
+    default | calibrated) ;;
     fewer) echo "-s features.max_points=800 -s lidar.max_insert_points=5000" ;;
     unrefined) echo "-s output.refined=false" ;;
     nlopt) echo "-s solver.type=taut::NloptSolver" ;;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # One job of run.sh: makes or finds a recording, runs all variants on it, leaves a line of CSV for each run.
 #   job.sh sweep PRIOR AXIS LEVEL SEED | job.sh recording NAME | job.sh sequence SCENARIO | job.sh cost NAME ROUND
-#   job.sh start PLACE LIDAR SEED
+#   job.sh start PLACE LIDAR SEED | job.sh reality SCENARIO SEED
 # Environment: RESULTS, the folder of the results. What has a result is not run again.
 set -euo pipefail
 # shellcheck source=common.sh
@@ -87,6 +87,15 @@ case $group in
       *) simulate "$root/config/scenarios/street_vehicle.yaml" --seed "$seed" --set duration=8 --set rest=0 \
         --set "lidar.type=$3" --set "world.type=$2" ;;
     esac
+    ;;
+  reality) # "calibrated": the same drive without the errors of calibration
+    seed=$3 variants=$reality
+    missing || exit 0
+    scenario=$root/config/scenarios/$case.yaml
+    simulate "$scenario" --seed "$seed"
+    for variant in $variants; do [ "$variant" = calibrated ] || run "$variant"; done
+    simulate "$scenario" --seed "$seed" "${calibrated[@]}"
+    variants=calibrated
     ;;
   cost)
     seed=$3 variants=$modes

@@ -29,6 +29,9 @@ table recordings-ate recording '.*' - 2 recording 8 "$modes"
 table recordings-rotation recording '.*' - 2 recording 10 "$modes"
 for kind in recording sequence; do table "ablations-$kind" $kind '.*' - 2 $kind 8 "$ablations"; done
 for score in ate:8 max:9; do table "starts-${score%:*}" start '.*' . "2 3" "place | LiDAR" "${score#*:}" default; done
+for score in ate:8 rotation:10; do
+  table "reality-${score%:*}" reality '.*' - 2 scenario "${score#*:}" "$reality"
+done
 table sweep-iterations sweep '.*' rate "2 4" "prior | peak rate [deg/s]" 13 "$modes"
 select_runs sweep '.*' . | awk -f "$here/gain.awk" >"$tables/gain.md"
 select_runs cost '.*' - | awk -v modes="$modes" -f "$here/cost.awk" >"$tables/cost.md"

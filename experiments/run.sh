@@ -5,7 +5,8 @@
 #   experiments/run.sh [-j JOBS] [-s SEEDS] [-o FOLDER] [-g "GROUPS"] [-n]
 #     -j  jobs at a time (default: the cores there are)      -s  seeds of sweeps and starts (default 5)
 #     -o  folder of results (default out/experiments)        -n  leave docs/ alone
-#     -g  of: sweep recording cost sequence start (default: these), slam (prints its table: slam.sh)
+#     -g  of: sweep recording cost sequence start (default: these), reality (ten scenarios with all that is wrong at
+#         once; two hours a seed and core), slam (prints its table: slam.sh)
 # Recordings that are not in the repository are taken from $TAUT_DATA (default ../shared/data) and left out, visibly,
 # where they are absent.
 set -euo pipefail
@@ -61,6 +62,10 @@ plan() { # the jobs of a group, one a line
         for name in "street VLP-16" "street HDL-32E" "forest VLP-16" "forest HDL-32E" "flight OS1-64"; do
           echo "start $name $seed"
         done
+      done ;;
+    reality)
+      for seed in $(seq "$seeds"); do
+        for name in "$root"/config/scenarios/reality_*.yaml; do echo "reality $(basename "$name" .yaml) $seed"; done
       done ;;
     cost) for seed in $(seq "$seeds"); do for name in $(recordings | head -1); do echo "cost $name $seed"; done; done ;;
     *) echo "no such group: $1" >&2; return 1 ;;
