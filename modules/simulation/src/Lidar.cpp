@@ -127,6 +127,23 @@ int Lidar::sweeps(double duration) const
     return available < 0 ? 0 : static_cast<int>(available / pattern_->period());
 }
 
+/** The random numbers of a shot. Drawn whether used or not: what happens to one shot does not
+ * change the noise of others. */
+struct Lidar::Luck
+{
+    Luck(Random& random, Random& air, const WeatherConfig& weather)
+        : noise(random.normal()),
+          detected(random.uniform()),
+          lost(random.uniform()),
+          turn(random.uniform(0, M_PI)),
+          radius(std::sqrt(random.uniform())),
+          drop(nearReturn(weather, air))
+    {
+    }
+    double noise, detected, lost, turn, radius;
+    std::optional<double> drop;  // its distance [m]
+};
+
 std::vector<Lidar::Return> Lidar::castAll(
     const std::vector<Shot>& shots, int k, const Motion& motion, const Scene& scene,
     Executor& executor) const
@@ -139,45 +156,10 @@ std::vector<Lidar::Return> Lidar::castAll(
         Random air(seed_, 33, chunk * sweeps + static_cast<std::uint64_t>(k));
         for (std::size_t i = begin; i < end; i++)
         {
-            const Shot& shot = shots[i];
-            // Drawn whether used or not: what happens to one shot does not change the noise of
-            // others.
-            const double noise = random.normal(), luck = random.uniform(), loss = random.uniform();
-            const double turn = random.uniform(0, M_PI), radius = std::sqrt(random.uniform());
-            const double t = toSeconds(kStart + shot.t);
-            const std::optional<double> drop = nearReturn(weather_, air);
-            const Pose T = motion.poseAt(t) * mount_.at(t);
-            const Vector3d looking = beam_errors_.looking(shot.direction, shot.ring);
-            const Vector3d direction = T.R * looking;
-            const Vector3d origin = T * shot.origin;
-            auto hit = castBeam(scene, t, origin, direction, config_, turn, radius);
-            if (own_body_)
-            {
-                auto own = own_body_->cast(shot.origin, looking, hit ? hit->range : kOwnReach);
-                if (own) own->normal = T.R * own->normal;
-                if (own) hit = own;
-            }
-            const bool by_drop = drop && *drop >= config_.min_range &&
-                                 *drop < (hit ? hit->range : config_.max_range);
-            if (by_drop) hit = Hit{*drop, -direction, kDropReflectivity};
-            if (!hit || loss < config_.dropout) continue;
-            const double through = transmitted(weather_, hit->range);
-            if (config_.detection_range > 0 && !by_drop &&
-                luck > detectionProbability(*hit, direction, config_.detection_range, through))
-                continue;
-            const double cosine = -hit->normal.dot(direction);
-            const double light = std::clamp(cosine * hit->reflectivity, 0.0, 1.0) * through;
-            const double range = rangeOf(*hit, shot, noise, light, cosine);
-            if (range < config_.min_range || range > config_.max_range) continue;
-
-            Return r;
-            r.point.position = (shot.origin + range * shot.direction).cast<float>();
-            r.point.intensity = static_cast<float>(std::round(255 * light));
-            r.point.offset = static_cast<std::int32_t>(shot.t - shots.front().t);
-            r.point.ring = shot.ring;
-            r.without_errors = mount_.corrected(beam_errors_.removed(r.point, shot.origin), t);
-            r.surface = origin + hit->range * direction;
-            parts[chunk].push_back(r);
+            auto r = measure(shots[i], Luck(random, air, weather_), motion, scene);
+            if (!r) continue;
+            r->point.offset = static_cast<std::int32_t>(shots[i].t - shots.front().t);
+            parts[chunk].push_back(*r);
         }
     };
     executor.forChunks(shots.size(), kChunk, cast);
@@ -185,6 +167,43 @@ std::vector<Lidar::Return> Lidar::castAll(
     std::vector<Return> all;
     for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
     return all;
+}
+
+std::optional<Lidar::Return> Lidar::measure(
+    const Shot& shot, const Luck& luck, const Motion& motion, const Scene& scene) const
+{
+    const double t = toSeconds(kStart + shot.t);
+    const Pose T = motion.poseAt(t) * mount_.at(t);
+    const Vector3d looking = beam_errors_.looking(shot.direction, shot.ring);
+    const Vector3d direction = T.R * looking;
+    const Vector3d origin = T * shot.origin;
+    auto hit = castBeam(scene, t, origin, direction, config_, luck.turn, luck.radius);
+    if (own_body_)
+    {
+        auto own = own_body_->cast(shot.origin, looking, hit ? hit->range : kOwnReach);
+        if (own) own->normal = T.R * own->normal;
+        if (own) hit = own;
+    }
+    const bool by_drop = luck.drop && *luck.drop >= config_.min_range &&
+                         *luck.drop < (hit ? hit->range : config_.max_range);
+    if (by_drop) hit = Hit{*luck.drop, -direction, kDropReflectivity};
+    if (!hit || luck.lost < config_.dropout) return {};
+    const double through = transmitted(weather_, hit->range);
+    if (config_.detection_range > 0 && !by_drop &&
+        luck.detected > detectionProbability(*hit, direction, config_.detection_range, through))
+        return {};
+    const double cosine = -hit->normal.dot(direction);
+    const double light = std::clamp(cosine * hit->reflectivity, 0.0, 1.0) * through;
+    const double range = rangeOf(*hit, shot, luck.noise, light, cosine);
+    if (range < config_.min_range || range > config_.max_range) return {};
+
+    Return r;
+    r.point.position = (shot.origin + range * shot.direction).cast<float>();
+    r.point.intensity = static_cast<float>(std::round(255 * light));
+    r.point.ring = shot.ring;
+    r.without_errors = mount_.corrected(beam_errors_.removed(r.point, shot.origin), t);
+    r.surface = origin + hit->range * direction;
+    return r;
 }
 
 double Lidar::rangeOf(

@@ -111,10 +111,14 @@ class Lidar
 
  private:
     struct Return;
+    struct Luck;
     std::vector<Return> castAll(
         const std::vector<Shot>& shots, int k, const Motion& motion, const Scene& scene,
         Executor& executor) const;
 
+    /** What one shot gives, but for its offset within the sweep. */
+    std::optional<Return> measure(
+        const Shot& shot, const Luck& luck, const Motion& motion, const Scene& scene) const;
     double rangeOf(
         const Hit& hit, const Shot& shot, double noise, double light, double cosine) const;
     void losePackets(std::vector<Return>& returns, int k) const;
