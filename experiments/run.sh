@@ -6,7 +6,7 @@
 #     -j  jobs at a time (default: the cores there are)      -s  seeds of sweeps and starts (default 5)
 #     -o  folder of results (default out/experiments)        -n  leave docs/ alone
 #     -g  of: sweep recording cost sequence start (default: these), reality (ten scenarios with all that is wrong at
-#         once; two hours a seed and core), slam (prints its table: slam.sh)
+#         once; some 15 minutes a seed and core), slam (prints its table: slam.sh)
 # Recordings that are not in the repository are taken from $TAUT_DATA (default ../shared/data) and left out, visibly,
 # where they are absent.
 set -euo pipefail
