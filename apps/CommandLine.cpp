@@ -10,16 +10,16 @@
 #include <memory>
 #include <numeric>
 #include <optional>
-#include <sstream>
 #include <thread>
+
+#include "CommandTable.h"
+#include "Commit.h"
 
 namespace taut
 {
 namespace
 {
 using Arguments = std::vector<TCLAP::Arg*>;
-
-constexpr std::size_t kWidth = 90;  // of the help
 
 bool isBuiltIn(const TCLAP::Arg* arg)
 {
@@ -140,35 +140,63 @@ void rejectUnknownOptions(const std::vector<std::string>& words, const Arguments
     }
 }
 
-/** Prints text in lines of kWidth that begin with so many spaces. */
-void printWrapped(const std::string& text, std::size_t indent)
+/** As the table of the program tells it. What TCLAP adds itself is told in taut's words. */
+TableEntry entryOf(TCLAP::Arg& arg)
 {
-    std::istringstream words(text);
-    std::string word, line;
-    const auto print = [&]
-    {
-        if (!line.empty()) std::cout << std::string(indent, ' ') << line << "\n";
-        line.clear();
-    };
-    while (words >> word)
-    {
-        if (indent + line.size() + 1 + word.size() > kWidth) print();
-        line += (line.empty() ? "" : " ") + word;
-    }
-    print();
+    const std::string& name = arg.getName();
+    if (name == "help") return {"h", name, "", "Print what the program does and its options"};
+    if (name == "version")
+        return {"", name, "", "Print the version and the commit it was built of"};
+    if (name == TCLAP::Arg::ignoreNameString()) return {"-", "", "", "What follows is no option"};
+    std::string description = arg.getDescription();
+    const std::string label = "(required)  ";  // of TCLAP; here a heading says so
+    if (description.compare(0, label.size(), label) == 0) description.erase(0, label.size());
+    const bool positional = isPositional(arg);
+    return {
+        positional ? "" : arg.getFlag(),
+        positional ? "" : name,
+        valueOf(arg),
+        description,
+        arg.isRequired(),
+        arg.acceptsMultipleValues()};
 }
 
-void printArgument(TCLAP::Arg& arg)
+std::string synopsisOf(const std::vector<TableEntry>& entries)
 {
-    const std::string value = valueOf(arg);
-    const std::string flag = arg.getFlag().empty() ? "" : "-" + arg.getFlag() + ", ";
-    const std::string name = isPositional(arg) ? value : flag + "--" + arg.getName() + " " + value;
-    const std::string more = arg.acceptsMultipleValues() ? " (may be repeated)" : "";
-    const std::string description = arg.getDescription();
-    const std::string label = "(required)  ";  // of TCLAP; here a heading says so
-    const bool labelled = description.compare(0, label.size(), label) == 0;
-    printWrapped(name, 2);
-    printWrapped((labelled ? description.substr(label.size()) : description) + more, 8);
+    std::string text;
+    for (const TableEntry& entry : entries)
+    {
+        if (!entry.required) continue;
+        if (!entry.isArgument()) text += entry.spellings().front() + " ";
+        text += entry.value + " ";
+    }
+    return text + "[options]";
+}
+
+CommandTable tableOf(TCLAP::CmdLineInterface& cmd, const std::string& program, const Usage& usage)
+{
+    CommandTable table;
+    table.program = program;
+    table.version = cmd.getVersion();
+    describe(cmd.getMessage(), table);
+    for (TCLAP::Arg* arg : argumentsOf(cmd)) table.entries.push_back(entryOf(*arg));
+    table.synopses.push_back(synopsisOf(table.entries));
+    if (usage.alone != nullptr)
+        table.synopses.push_back("--" + usage.alone->getName() + " [options]");
+    table.examples = usage.examples;
+    return table;
+}
+
+/** The build makes the manual page and the completion with options that users need not know. */
+bool printMadeFromTable(const CommandTable& table, const std::string& option)
+{
+    if (option == "--print-manual-page")
+        std::cout << manualPage(table);
+    else if (option == "--print-bash-completion")
+        std::cout << bashCompletion(table);
+    else
+        return false;
+    return true;
 }
 
 /** What TCLAP says, in taut's words. */
@@ -182,26 +210,12 @@ class Output : public TCLAP::StdOutput
 
     void usage(TCLAP::CmdLineInterface& cmd) override
     {
-        const Arguments arguments = argumentsOf(cmd);
-        printWrapped(cmd.getMessage(), 0);
-        std::cout << "\nUsage:\n";
-        printWrapped(program_ + requiredOf(arguments) + " [options]", 2);
-        if (usage_.alone != nullptr)
-            printWrapped(program_ + " --" + usage_.alone->getName() + " [options]", 2);
-        std::cout << "\nExamples:\n";
-        for (const std::string& example : usage_.examples)
-            std::cout << "  " << program_ << " " << example << "\n";
-        std::cout << "\nRequired:\n";
-        for (TCLAP::Arg* arg : arguments)
-            if (arg->isRequired()) printArgument(*arg);
-        std::cout << "\nOptions:\n";
-        for (TCLAP::Arg* arg : arguments)
-            if (!arg->isRequired()) printArgument(*arg);
+        std::cout << helpText(tableOf(cmd, program_, usage_));
     }
 
     void version(TCLAP::CmdLineInterface& cmd) override
     {
-        std::cout << program_ << " " << cmd.getVersion() << "\n";
+        std::cout << program_ << " " << cmd.getVersion() << " (commit " << kCommit << ")\n";
     }
 
     void failure(TCLAP::CmdLineInterface& cmd, TCLAP::ArgException& e) override
@@ -216,19 +230,6 @@ class Output : public TCLAP::StdOutput
     }
 
  private:
-    static std::string requiredOf(const Arguments& arguments)
-    {
-        std::string text;
-        for (const TCLAP::Arg* arg : arguments)
-        {
-            if (!arg->isRequired()) continue;
-            const std::string& flag = arg->getFlag();
-            if (!isPositional(*arg)) text += flag.empty() ? " --" + arg->getName() : " -" + flag;
-            text += " " + valueOf(*arg);
-        }
-        return text;
-    }
-
     void missing(const Arguments& arguments)
     {
         complete_ = usage_.alone != nullptr && usage_.alone->isSet();
@@ -251,9 +252,10 @@ class Output : public TCLAP::StdOutput
 
 bool parseCommandLine(TCLAP::CmdLine& cmd, int argc, char** argv, const Usage& usage)
 {
+    const std::string program = std::filesystem::path(argv[0]).filename().string();
+    if (argc == 2 && printMadeFromTable(tableOf(cmd, program, usage), argv[1])) return false;
     rejectUnknownOptions({argv + 1, argv + argc}, argumentsOf(cmd));
-    const std::filesystem::path program = argv[0];
-    Output output(program.filename().string(), usage);
+    Output output(program, usage);
     const std::unique_ptr<TCLAP::CmdLineOutput> replaced(cmd.getOutput());  // TCLAP would leak it
     cmd.setOutput(&output);
     return cmd.parse(argc, argv) || output.complete();

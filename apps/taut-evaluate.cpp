@@ -53,7 +53,10 @@ taut::PlotFormat plotFormatOf(const std::string& name)
 /** Nothing if only help was asked for. */
 std::optional<Options> parse(int argc, char** argv)
 {
-    TCLAP::CmdLine cmd("Scores an estimated trajectory against the truth", ' ', TAUT_VERSION);
+    TCLAP::CmdLine cmd(
+        "taut-evaluate: scores an estimated trajectory against the truth. Exit codes: 0 scored, "
+        "1 failed or refused, 2 bad usage.",
+        ' ', TAUT_VERSION);
     TCLAP::ValueArg<std::string> truth(
         "", "truth", "True trajectory (TUM file, or EuRoC's data.csv)", true, "", "FILE", cmd);
     TCLAP::ValueArg<std::string> estimate(
@@ -63,8 +66,8 @@ std::optional<Options> parse(int argc, char** argv)
         cmd);
     TCLAP::SwitchArg json("", "json", "Write JSON instead of a table", cmd);
     TCLAP::ValueArg<std::string> alignment(
-        "", "align", "Alignment of the estimate to the truth: se3 (default), yaw or none", false,
-        "se3", "NAME", cmd);
+        "", "align", "Alignment of the estimate to the truth (default se3)", false, "se3",
+        "se3|yaw|none", cmd);
     TCLAP::ValueArg<std::string> frame_estimate(
         "", "frame-estimate",
         "Trajectory of another run in the same frame, such as the known map's: the alignment is "
@@ -97,7 +100,7 @@ std::optional<Options> parse(int argc, char** argv)
         "", "plot", "Draw the trajectory and the errors into that folder (needs gnuplot)", false,
         "", "FOLDER", cmd);
     TCLAP::ValueArg<std::string> plot_format(
-        "", "plot-format", "svg (default) or png", false, "svg", "NAME", cmd);
+        "", "plot-format", "Format of the plots (default svg)", false, "svg", "svg|png", cmd);
     const taut::Usage usage{
         {"--truth rawlogs/hall_fast.gt.tum --estimate out/hall_fast/trajectory.tum",
          "--truth GT.tum --estimate trajectory.tum --align yaw --plot out/plots"}};

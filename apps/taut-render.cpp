@@ -64,13 +64,16 @@ void checkSize(const taut::OSMesaRendererConfig& config)
 /** Nothing if only help was asked for. */
 std::optional<Options> parse(int argc, char** argv)
 {
-    TCLAP::CmdLine cmd("Draws the map and the trajectory that taut-slam left", ' ', TAUT_VERSION);
+    TCLAP::CmdLine cmd(
+        "taut-render: draws the map and the trajectory that taut-slam left. Exit codes: 0 done, "
+        "1 failed, 2 bad usage.",
+        ' ', TAUT_VERSION);
     TCLAP::ValueArg<std::string> input(
         "i", "input", "Folder with map.ply and trajectory.tum", true, "", "FOLDER", cmd);
     TCLAP::ValueArg<std::string> output(
         "o", "output", "Folder for snapshot_*.png (default: the input)", false, "", "FOLDER", cmd);
     TCLAP::ValueArg<std::string> view(
-        "", "view", "top, oblique, follow or all (default)", false, "all", "NAME", cmd);
+        "", "view", "What is drawn (default all)", false, "all", "top|oblique|follow|all", cmd);
     TCLAP::ValueArg<std::string> size(
         "", "size", "Pixels of a picture (default 1600x1000)", false, "1600x1000", "WxH", cmd);
     TCLAP::ValueArg<std::string> caption(

@@ -21,7 +21,8 @@ struct Options
 std::optional<Options> parse(int argc, char** argv)
 {
     TCLAP::CmdLine cmd(
-        "Makes a page of a run: one file for a browser, with the map, the trajectory and plots",
+        "taut-report: makes a page of a run, one file for a browser with the map, the trajectory "
+        "and plots. Exit codes: 0 done, 1 failed, 2 bad usage.",
         ' ', TAUT_VERSION);
     TCLAP::UnlabeledValueArg<std::string> folder(
         "results", "Folder with the results of taut-slam", true, "", "OUT/", cmd);

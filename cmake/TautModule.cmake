@@ -17,13 +17,30 @@ function(taut_add_module name)
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
 
-# taut_add_app(name SOURCES ... DEPENDS ...): a program, thin over the modules.
+# taut_add_app(name SOURCES ... DEPENDS ...): a program, thin over the modules. It prints its manual page and its
+# completion itself. They are made by running it, but not with a sanitizer, which would run at every build.
 function(taut_add_app name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} taut_options)
   target_compile_definitions(${name} PRIVATE TAUT_VERSION="${PROJECT_VERSION}")
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  set_property(GLOBAL APPEND PROPERTY TAUT_PROGRAMS ${name})
+  if(TAUT_SANITIZE)
+    return()
+  endif()
+  set(page ${CMAKE_BINARY_DIR}/share/man/man1/${name}.1)
+  set(completion ${CMAKE_BINARY_DIR}/share/bash-completion/completions/${name})
+  add_custom_command(
+    OUTPUT ${page} ${completion}
+    COMMAND ${name} --print-manual-page > ${page}
+    COMMAND ${name} --print-bash-completion > ${completion}
+    DEPENDS ${name}
+    COMMENT "Writing manual page and completion of ${name}"
+    VERBATIM)
+  add_custom_target(${name}_manual ALL DEPENDS ${page} ${completion})
+  install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 endfunction()
 
 # taut_add_test(name SOURCES ... [DEPENDS ...] [LABELS ...] [PROPERTIES ...]): a GoogleTest program, one

@@ -26,7 +26,10 @@ struct Options
 /** Nothing if only help was asked for. */
 std::optional<Options> parse(int argc, char** argv)
 {
-    TCLAP::CmdLine cmd("Writes a rawlog with its truth from a scenario", ' ', TAUT_VERSION);
+    TCLAP::CmdLine cmd(
+        "taut-simulate: writes a rawlog with its truth from a scenario. Exit codes: 0 done, "
+        "1 failed, 2 bad usage, 3 interrupted: what was done is saved.",
+        ' ', TAUT_VERSION);
     TCLAP::ValueArg<std::string> scenario(
         "c", "config", "Scenario, as those in config/scenarios", true, "", "SCENARIO.yaml", cmd);
     TCLAP::ValueArg<std::string> output(

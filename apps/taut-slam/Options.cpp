@@ -101,7 +101,8 @@ bool parseOptions(int argc, char** argv, Options& o)
         cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "Errors only: as -v ERROR", cmd);
     TCLAP::ValueArg<std::string> level(
-        "v", "verbosity", "ERROR, WARN, INFO or DEBUG (default INFO)", false, "INFO", "LEVEL", cmd);
+        "v", "verbosity", "How much is told (default INFO)", false, "INFO", "ERROR|WARN|INFO|DEBUG",
+        cmd);
     const Usage usage{
         {"-i rawlogs/hall_fast.rawlog -o out/hall_fast",
          "-i LOG.rawlog -o out/paper -c config/paper.yaml --threads 2",

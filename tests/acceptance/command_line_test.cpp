@@ -15,6 +15,7 @@ namespace
 {
 using namespace taut::test;
 using testing::HasSubstr;
+using testing::MatchesRegex;
 
 TEST(TheCommandLine, ExplainsEveryOption)
 {
@@ -121,7 +122,9 @@ TEST_P(EveryProgram, BeginsItsOptionsWithThoseRequiredAndGivesExamples)
 
 TEST_P(EveryProgram, TellsItsVersionInOneLine)
 {
-    EXPECT_EQ(run("--version").output, name_ + " " TAUT_VERSION "\n");
+    EXPECT_THAT(
+        run("--version").output,
+        MatchesRegex(name_ + " " TAUT_VERSION " [(]commit ([0-9a-f]{7,40}(-dirty)?|unknown)[)]\n"));
 }
 
 TEST_P(EveryProgram, FailsWhereItsOutputCannotBeWritten)
@@ -164,6 +167,7 @@ const std::vector<Program> kPrograms{
 #ifdef TAUT_WITH_SIMULATE
     {"taut-simulate", "option -c/--config and option -o/--output are required"},
 #endif
+    {"taut-report", "argument OUT/ is required"},
     {"taut-render", "option -i/--input is required"}};
 
 INSTANTIATE_TEST_SUITE_P(
