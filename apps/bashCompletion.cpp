@@ -13,7 +13,7 @@ constexpr const char* kFunctions = R"bash(
 _taut_files()
 {
     compopt -o filenames 2> /dev/null
-    [[ ! $1 ]] || mapfile -t COMPREPLY < <(compgen -o plusdirs -f -X "!*$1" -- "$_taut_word")
+    [[ ! ${1-} ]] || mapfile -t COMPREPLY < <(compgen -o plusdirs -f -X "!*$1" -- "$_taut_word")
     [[ ${#COMPREPLY[@]} -gt 0 ]] || mapfile -t COMPREPLY < <(compgen -f -- "$_taut_word")
 }
 

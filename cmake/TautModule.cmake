@@ -12,7 +12,8 @@ function(taut_add_module name)
   target_link_libraries(taut_${name} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS}
                                                                   $<BUILD_INTERFACE:taut_options>)
   set_target_properties(taut_${name} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION}
-                                                SOVERSION ${PROJECT_VERSION_MAJOR})
+                                                SOVERSION ${PROJECT_VERSION_MAJOR}
+                                                INSTALL_RPATH "$ORIGIN")
   install(TARGETS taut_${name} EXPORT tautTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()

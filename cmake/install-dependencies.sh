@@ -2,6 +2,7 @@
 # Installs the Debian 12 packages that taut builds with; does nothing where they are there already.
 # With --grabber also MRPT's sensor drivers and rawlog-grabber, which pull in Qt and wxWidgets.
 # With --browser also chromium, in which the tests look at report.html (124 MB to fetch, 414 MB installed).
+# dpkg-dev and file are for cpack, man-db is for the tests of the manual pages.
 set -euo pipefail
 packages=(
   g++ cmake ninja-build pkg-config
@@ -11,6 +12,7 @@ packages=(
   libembree-dev libpcap-dev
   libgtest-dev libgmock-dev libbenchmark-dev nlohmann-json3-dev libssl-dev gnuplot-nox doxygen
   libjs-three
+  dpkg-dev file man-db
 )
 for option in "$@"; do
   case "$option" in
