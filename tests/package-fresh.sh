@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# tests/package-fresh.sh PACKAGE.deb: installs the package on a fresh Debian 12, as apt does it for a user; runs the
+# tests/package-fresh.sh PACKAGE.deb [ROOT]: installs the package on a fresh Debian 12, as apt does it for a user; runs the
 # sample, builds the plug-in with Debian's compiler, looks for pages and completion, and removes it all. The fresh system
-# is made by debootstrap in a folder of its own. Needs root, debootstrap and the network: some 700 MB, five minutes.
+# is made by debootstrap in a folder of its own, or was made in ROOT before. Needs root, debootstrap and the network: some
+# 700 MB, five minutes.
 set -euo pipefail
 package=$(realpath "$1")
 mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
@@ -9,18 +10,16 @@ mirror=${DEBIAN_MIRROR:-http://deb.debian.org/debian}
 # Mounts of a namespace of its own are gone with this script.
 if [ "${TAUT_UNSHARED:-}" != 1 ]; then
   export TAUT_UNSHARED=1
-  exec unshare --mount --propagation private "$0" "$package"
+  exec unshare --mount --propagation private "$0" "$package" "${@:2}"
 fi
-root=$(mktemp -d)
-clean_up() {
-  umount "$root/proc" 2> /dev/null || true
-  rm -rf --one-file-system "$root"
-}
-trap clean_up EXIT
-
-debootstrap --variant=minbase --include=ca-certificates bookworm "$root" "$mirror" > "$root.log" 2>&1 \
-  || { tail "$root.log"; exit 1; }
-rm "$root.log"
+if [ $# -gt 1 ]; then
+  root=$2
+else
+  root=$(mktemp -d)
+  trap 'umount "$root/proc" || true; rm -rf --one-file-system "$root"' EXIT
+  debootstrap --variant=minbase --include=ca-certificates bookworm "$root" "$mirror" > "$root/log" 2>&1 \
+    || { tail "$root/log"; exit 1; }
+fi
 mount -t proc proc "$root/proc"
 cp "$package" "$root/tmp/taut.deb"
 cat > "$root/tmp/try.sh" << 'END'

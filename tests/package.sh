@@ -46,7 +46,7 @@ root=${TAUT_PACKAGE_ROOT:-"$scratch/some where"}
 mkdir -p "$root"
 dpkg-deb --extract "$package" "$root"
 dpkg-deb --control "$package" "$scratch/control"
-grep -q ldconfig "$scratch/control/triggers" || fail "it does not tell ldconfig of its libraries"
+grep -q ldconfig "$scratch/control/postinst" || fail "it does not tell ldconfig of its libraries"
 usr=$root/usr
 libraries=$(dirname "$(find "$usr/lib" -name 'libtaut_core.so')")
 documentation=$usr/share/doc/taut
@@ -100,8 +100,8 @@ for program in $programs; do
     || fail "$program does not find its libraries"
 done
 # The configuration of the installation, not that of the sources: a change to it is seen.
-sed -i 's/^  max_iterations: .*/  max_iterations: 7/' "$usr/share/taut/config/default.yaml"
-"$usr/bin/taut-slam" --show-config | grep -q 'max_iterations: 7 ' || fail "taut-slam does not read the installed configuration"
+echo 'estimation: {max_iterations: 7}' >> "$usr/share/taut/config/default.yaml"
+[[ $("$usr/bin/taut-slam" --show-config) == *"max_iterations: 7 "* ]] || fail "taut-slam does not read the installed configuration"
 dpkg-deb --fsys-tarfile "$package" | tar -C "$root" -x ./usr/share/taut/config/default.yaml
 sample=$usr/share/taut/rawlogs/hall_fast
 "$usr/bin/taut-slam" -q -i "$sample.rawlog" -o "$scratch/out" -s initialization.rest_duration=3 --truth "$sample.gt.tum"
