@@ -145,7 +145,7 @@ class TheCompletion : public testing::Test
     {
         namespace fs = std::filesystem;
         for (const char* folder : {"results", "recordings"}) fs::create_directory(folder_ / folder);
-        for (const char* file : {"a.rawlog", "b.rawlog", "c.yaml", "d.pcap", "results/e.rawlog"})
+        for (const char* file : {"a.yaml", "b.yaml", "c.rawlog", "d.pcap", "results/e.yaml"})
             std::ofstream{folder_ / file};
     }
 
@@ -157,18 +157,17 @@ class TheCompletion : public testing::Test
 TEST_F(TheCompletion, OffersFilesThatFitAndFolders)
 {
     EXPECT_THAT(
-        slam(R"(-i "")"), UnorderedElementsAre("a.rawlog", "b.rawlog", "results", "recordings"));
-    EXPECT_THAT(slam("-i a"), ElementsAre("a.rawlog"));
-    EXPECT_THAT(slam("-i results/"), ElementsAre("results/e.rawlog"));
-    EXPECT_THAT(slam("-i a.rawlog --config c"), ElementsAre("c.yaml"));
+        slam(R"(-c "")"), UnorderedElementsAre("a.yaml", "b.yaml", "results", "recordings"));
+    EXPECT_THAT(slam("--config a"), ElementsAre("a.yaml"));
+    EXPECT_THAT(slam("-w -c results/"), ElementsAre("results/e.yaml"));
     EXPECT_THAT(
         completed("taut-import", R"("")", folder_ / ""),
-        UnorderedElementsAre("a.rawlog", "b.rawlog", "c.yaml", "d.pcap", "results", "recordings"));
+        UnorderedElementsAre("a.yaml", "b.yaml", "c.rawlog", "d.pcap", "results", "recordings"));
 }
 
 TEST_F(TheCompletion, OffersAnyFileWhereNoneHasTheUsualEnding)
 {
-    EXPECT_THAT(slam("-i d"), ElementsAre("d.pcap"));
+    EXPECT_THAT(slam("-c d"), ElementsAre("d.pcap"));
 }
 
 TEST_F(TheCompletion, OffersFoldersForResults)
