@@ -4,6 +4,7 @@
 #include <string>
 
 #include "CommandLine.h"
+#include "scanTimesOf.h"
 
 namespace taut
 {
@@ -27,13 +28,19 @@ class LogArguments
               "", "from-time", "Leave out what is earlier: seconds since the start of the log",
               false, 0, "SECONDS", cmd),
           to_("", "to-time", "End there: seconds since the start of the log", false,
-              std::numeric_limits<double>::infinity(), "SECONDS", cmd)
+              std::numeric_limits<double>::infinity(), "SECONDS", cmd),
+          times_(
+              "", "scan-times",
+              "Scans without times of their points: azimuth tells them, or none (default auto: the "
+              "azimuth of a sensor that turns, unless the scans are undistorted already)",
+              false, "auto", "auto|azimuth|none", cmd)
     {
     }
 
     const std::string& rig() { return rig_.getValue(); }
     const std::string& lidarLabel() { return lidar_.getValue(); }
     const std::string& imuLabel() { return imu_.getValue(); }
+    ScanTimes scanTimes() { return scanTimesOf(times_.getValue()); }
     double fromTime() { return from_.getValue(); }
     /** Throws UsageError if the part of the time is none. */
     double toTime()
@@ -49,5 +56,6 @@ class LogArguments
  private:
     TCLAP::ValueArg<std::string> rig_, lidar_, imu_;
     TCLAP::ValueArg<double> from_, to_;
+    TCLAP::ValueArg<std::string> times_;
 };
 }  // namespace taut

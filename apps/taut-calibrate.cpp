@@ -66,6 +66,7 @@ std::optional<Options> parse(int argc, char** argv)
     o.log.imu_label = part.imuLabel();
     o.log.from_time = part.fromTime();
     o.log.to_time = part.toTime();
+    o.log.scan_times = part.scanTimes();
     if (!part.rig().empty())
     {
         o.rig = taut::readYamlFile(part.rig());

@@ -54,6 +54,7 @@ std::optional<Options> parse(int argc, char** argv)
     log.imu_label = part.imuLabel();
     log.from_time = part.fromTime();
     log.to_time = part.toTime();
+    log.scan_times = part.scanTimes();
     if (!(window.getValue() >= 3 && window.getValue() <= 600))
         throw taut::UsageError("--window must be 3 to 600 s");
     if (!part.rig().empty()) log.rig = taut::loadRig(part.rig());

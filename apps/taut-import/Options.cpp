@@ -1,6 +1,7 @@
 #include "Options.h"
 
 #include "../CommandLine.h"
+#include "../scanTimesOf.h"
 
 namespace taut
 {
@@ -55,9 +56,14 @@ bool parseOptions(int argc, char** argv, Options& o)
         "", "imu-topic", "Bags: topic of the IMU (default: the only one)", false, "", "REGEX", cmd);
     TCLAP::ValueArg<std::string> scan_stamp(
         "", "scan-stamp",
-        "Bags: which end of a sweep the stamp of its cloud is, start or end (default: as the times "
-        "of the points tell)",
+        "Clouds: which end of a sweep their stamp is, start or end (default: as the times of the "
+        "points, the IMU or the recorder tell)",
         false, "", "start|end", cmd);
+    TCLAP::ValueArg<std::string> scan_times(
+        "", "scan-times",
+        "Clouds without times of their points: azimuth tells them, or none (default auto: the "
+        "azimuth of a sensor that turns, unless the clouds are undistorted already)",
+        false, "auto", "auto|azimuth|none", cmd);
     TCLAP::SwitchArg overwrite("w", "overwrite", "Replace a rawlog that is there", cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "Errors and warnings only", cmd);
     const Usage usage{
@@ -75,6 +81,7 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.import.lidar_topic = lidar_topic.getValue();
     o.import.imu_topic = imu_topic.getValue();
     o.import.scan_stamp = scanStamp(scan_stamp.getValue());
+    o.import.scan_times = scanTimesOf(scan_times.getValue());
     o.overwrite = overwrite.getValue();
     o.quiet = quiet.getValue();
     return true;

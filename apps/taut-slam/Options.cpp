@@ -124,6 +124,7 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.imu_label = log.imuLabel();
     o.from_time = log.fromTime();
     o.to_time = log.toTime();
+    o.scan_times = log.scanTimes();
     o.only_first_n = first.getValue();
     o.plugins = plugins.getValue();
     o.threads = threadsOf(threads.getValue());

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "taut/completion/TurnFinder.h"
+
 namespace taut
 {
 /** What the command line says. */
@@ -19,6 +21,7 @@ struct Options
     std::string lidar_label, imu_label;  //!< regular expressions; empty: the only sensor there
     double from_time = 0,
            to_time = std::numeric_limits<double>::infinity();  //!< [s] from the start
+    ScanTimes scan_times = ScanTimes::Auto;                    //!< of scans without times
     int only_first_n = 0;                                      //!< scans; 0: all
     std::vector<std::string> plugins;
     int threads = 0;    //!< 0: as many as the machine has

@@ -46,6 +46,7 @@ RawlogConfig rawlogConfig(const Options& o, const Rig& rig)
     c.to_time = o.to_time;
     c.only_first_n = o.only_first_n;
     c.rig = rig;
+    c.scan_times = o.scan_times;
     return c;
 }
 

@@ -33,23 +33,23 @@ void put(std::ofstream& file, T value)
     file.write(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-/** x, y, z, ring and time, binary. */
-void writePly(const std::string& path, const Scan& scan)
+/** x, y, z, ring and, if wanted, time, binary. */
+void writePly(const std::string& path, const Scan& scan, bool times)
 {
     std::ofstream file(path, std::ios::binary);
     file << "ply\nformat binary_little_endian 1.0\nelement vertex " << scan.points.size()
          << "\nproperty float x\nproperty float y\nproperty float z\nproperty ushort ring\n"
-            "property int dt_ns\nend_header\n";
+         << (times ? "property int dt_ns\n" : "") << "end_header\n";
     for (const LidarPoint& p : scan.points)
     {
         for (int i = 0; i < 3; i++) put(file, p.position[i]);
         put(file, p.ring);
-        put(file, p.offset);
+        if (times) put(file, p.offset);
     }
 }
 
 /** The sample as a plain folder, up to a time, with the IMU in g and deg/s. */
-void writeFolder(const std::string& folder, double to_time)
+void writeFolder(const std::string& folder, double to_time, bool times = true)
 {
     fs::create_directories(folder);
     RawlogConfig config;
@@ -63,7 +63,7 @@ void writeFolder(const std::string& folder, double to_time)
     {
         if (const auto* scan = std::get_if<Scan>(&*measurement))
         {
-            writePly(folder + "/" + formatSeconds(scan->stamp) + ".ply", *scan);
+            writePly(folder + "/" + formatSeconds(scan->stamp) + ".ply", *scan, times);
             continue;
         }
         const auto& s = std::get<ImuSample>(*measurement);
@@ -109,6 +109,27 @@ TEST(AnImport, OfAPlainFolderLosesNoAccuracy)
     ASSERT_EQ(slam(log, out).exit_code, 0);
     // The sample itself: 0.82 mm.
     EXPECT_LT(positionError(kSampleTruth, out + "/trajectory.tum"), 0.0012);  // measured: 0.75 mm
+}
+
+TEST(AnImport, OfCloudsWithoutTimesTakesThemFromTheAzimuth)
+{
+    const TemporaryFolder folder;
+    const std::string in = folder / "in", log = folder / "log.rawlog", out = folder / "out";
+    writeFolder(in, 30, false);
+    writeRig(folder / "rig.yaml");
+    const std::string arguments = in + " -w -o " + log + " -r " + (folder / "rig.yaml");
+    const ProgramRun run = import(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    EXPECT_THAT(run.output, HasSubstr("times of the points: from their azimuth, clockwise"));
+    EXPECT_THAT(run.output, HasSubstr("stamp of a sweep: taken as its start, for then the gyro"));
+    ASSERT_EQ(slam(log, out).exit_code, 0);
+    // With times: 0.82 mm.
+    EXPECT_LT(positionError(kSampleTruth, out + "/trajectory.tum"), 0.0016);
+
+    const ProgramRun none = import(arguments + " --scan-times none");
+    EXPECT_EQ(none.exit_code, 0) << none.output;
+    EXPECT_THAT(none.output, HasSubstr("taken as already undistorted"));
+    EXPECT_EQ(import(arguments + " --scan-times never").exit_code, 2);
 }
 
 TEST(AnImport, IsRefusedWithOneLineAndLeavesNothing)

@@ -59,6 +59,20 @@ TEST_F(Recording, OfACarWithoutImuMovesOneMetreAScan)
     }
 }
 
+TEST_F(Recording, OfARealDriveHasTheRingsThatThePaperNeeds)
+{
+    const auto drive = dataFolder() / "kitti/2011_09_26/2011_09_26_drive_0009_sync";
+    if (!std::filesystem::exists(drive)) return skipWithout("kitti");
+    const std::string log = folder_ / "drive.rawlog";
+    const ProgramRun import = runProgram(TAUT_IMPORT, drive.string() + " -o " + log);
+    ASSERT_EQ(import.exit_code, 0) << import.output;
+    EXPECT_NE(import.output.find("rings: 64, told from the order"), std::string::npos);
+    const ProgramRun run = slam(log, out_, "-c " TAUT_CONFIG "/paper.yaml");
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    const std::string truth = (dataFolder() / "kitti/drive_0009.gt.tum").string();
+    EXPECT_LT(positionError(truth, trajectory_), 0.16);  // measured: 0.12 m of 55 m
+}
+
 TEST_F(Recording, OfATripodTurnsInPlace)
 {
     if (!run("tripod_vlp16_imu")) return skipWithout("tripod_vlp16_imu.rawlog");

@@ -2,6 +2,7 @@
 #include <ostream>
 
 #include "bag_support.h"
+#include "recording.h"
 
 namespace taut::test
 {
@@ -206,6 +207,44 @@ TEST_F(ABagOfClouds, DropsPointsThatAreNone)
     const Imported result = importStyle(s);
     expectSame(result.scans, scans_, 0);
     EXPECT_EQ(result.warnings.count("scan_bad_points"), 0u);  // a NaN is how ROS says "no return"
+}
+
+/* Stamped at the start and a row for each laser; or at the end and as measured. */
+TEST(ABagWithoutTimes, GetsThemFromTheAzimuthAndTheRecorder)
+{
+    const TemporaryFolder folder;
+    for (const bool organised : {true, false})
+    {
+        auto scans = Recording().scans();
+        CloudStyle s = style("", "", 1, false, organised ? 0 : 1);
+        s.rows = organised ? 16 : 1;
+        for (Scan& scan : scans)
+            if (organised)
+                std::stable_sort(
+                    scan.points.begin(), scan.points.end(),
+                    [](const LidarPoint& a, const LidarPoint& b) { return a.ring < b.ring; });
+        writeFile(folder / "a.bag", Ros1Writer::bag(sweepMessages(scans, s, TestWire::Ros1)));
+        const Imported result = import(folder / "a.bag");
+        EXPECT_THAT(
+            result.findings,
+            HasSubstr(
+                organised ? "its start, for it was recorded" : "its end, for it was recorded"));
+        EXPECT_EQ(result.warnings.count("scan_stamp"), 0u);
+        ASSERT_EQ(result.scans.size(), scans.size());
+        for (std::size_t k = 0; k < scans.size(); k++)
+        {
+            ASSERT_EQ(result.scans[k].points.size(), scans[k].points.size());
+            for (std::size_t i = 0; i < scans[k].points.size(); i++)
+                ASSERT_NEAR(
+                    toSeconds(
+                        result.scans[k].timeOf(result.scans[k].points[i]) -
+                        scans[k].timeOf(scans[k].points[i])),
+                    0, 1.5e-3);
+        }
+        ImportOptions none;
+        none.scan_times = ScanTimes::None;
+        EXPECT_TRUE(import(folder / "a.bag", none).scans[20].already_undistorted);
+    }
 }
 
 TEST(ALivoxBag, OfCustomMessagesGivesTheirPoints)

@@ -49,7 +49,7 @@ std::vector<std::string> MergedSource::findings() const
     if (undistorted_ > 0)
         lines.push_back(
             std::to_string(undistorted_) + " of " + std::to_string(scans_) +
-            " scans have no times of their points: they count as undistorted already");
+            " scans have no times of their points");
     return lines;
 }
 

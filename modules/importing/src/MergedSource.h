@@ -17,6 +17,7 @@ struct SensorStreams
     std::function<std::optional<Scan>()> next_scan;
     std::function<double()> progress;
     std::vector<std::string> findings;
+    bool undistorted = false;  //!< somebody undistorted the scans, as is known
 };
 
 /** Brings the streams of two sensors into the order of time: a scan when it has ended, as a
@@ -30,6 +31,7 @@ class MergedSource : public ImportSource
     std::optional<ImportedItem> next() override;
     double progress() const override { return streams_.progress(); }
     std::vector<std::string> findings() const override;
+    bool isUndistorted() const override { return streams_.undistorted; }
 
  private:
     void checkEnd();

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "CheckedSource.h"
+#include "CompletedSource.h"
 #include "ImportFormat.h"
 
 namespace taut
@@ -40,8 +41,12 @@ std::unique_ptr<ImportSource> openImportSource(
     for (const ImportFormat& format : importFormats())
     {
         if (format.matches(recording))
+        {
+            const auto open = [&](const WarningSink& sink)
+            { return format.open(recording, options, sink); };
             return std::make_unique<CheckedSource>(
-                path, format.open(recording, options, warn), options, warn);
+                path, std::make_unique<CompletedSource>(open, options, warn), options, warn);
+        }
         known += std::string(known.empty() ? "" : ", ") + format.name;
     }
     throw std::runtime_error("'" + path + "' is no recording that can be imported: " + known);

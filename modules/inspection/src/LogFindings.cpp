@@ -39,6 +39,9 @@ std::string adviceFor(const std::string& kind)
         {"scan_overlap",
          "the times of the points and the stamps come from different clocks: stamp by the "
          "sensor's clock"},
+        {"scan_times",
+         "nothing if the text is right; better record points with times; --scan-times none if the "
+         "scans are undistorted"},
         {"scan_invalid", "see the text; the scans are skipped"},
         {"scan_empty", "is the sensor covered, or still starting? the scans are skipped"},
         {"rig_unused", "correct the label in the rig file"},

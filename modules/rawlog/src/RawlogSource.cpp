@@ -18,6 +18,7 @@
 #include "ObservationReader.h"
 #include "ObservationToScan.h"
 #include "SensorChoice.h"
+#include "taut/completion/SweepCompleter.h"
 #include "taut/core/format.h"
 #include "taut/rawlog/StampOrder.h"
 
@@ -101,6 +102,8 @@ struct RawlogSource::Impl
     std::optional<Measurement> convertLidar(const CObservation& observation, Duration shift);
     bool withinRange(const ImuSample& sample);
     bool checkImuTime(Time t);
+    void completeTimes(Scan& scan);
+    void learnTimes(Time t);
     bool checkScanTime(const Scan& scan);
     void checkPoints(const ScanBuilder& points, Time t);
     Pose lidarPose(const CObservation& observation) const;
@@ -134,7 +137,8 @@ struct RawlogSource::Impl
     ImuUnitCheck unit_check;
     std::optional<Time> last_imu, last_scan, last_scan_end;
     Time begin = std::numeric_limits<Time>::min(), end = std::numeric_limits<Time>::max();
-    bool warned_undistorted = false, finished = false;
+    std::optional<SweepCompleter> completer;  // once a scan without times was met
+    bool finished = false;
 };
 
 /* ---- reading ---- */
@@ -431,13 +435,9 @@ std::optional<Measurement> RawlogSource::Impl::convertLidar(
             skip(t, "scan_empty", "a scan has no valid point of " + std::to_string(points.seen()));
             return {};
         }
+        if (scan.already_undistorted) completeTimes(scan);
         if (!checkScanTime(scan)) return {};
         checkPoints(points, t);
-        if (scan.already_undistorted && !std::exchange(warned_undistorted, true))
-            warn(
-                t, "scan_undistorted",
-                "the points of a scan have no times, or all the same: it is taken as undistorted "
-                "already");
         progress.scans++;
         return scan;
     }
@@ -446,6 +446,44 @@ std::optional<Measurement> RawlogSource::Impl::convertLidar(
         skip(t, "scan_invalid", "a scan cannot be used: " + errorText(e));
         return {};
     }
+}
+
+/* What tells the times is learnt by reading the log a first time. */
+void RawlogSource::Impl::learnTimes(Time t)
+{
+    completer.emplace(config.scan_times);
+    if (config.scan_times != ScanTimes::None) try
+        {
+            RawlogConfig again = config;
+            again.scan_times = ScanTimes::None;
+            RawlogSource source(again);
+            while (auto measurement = source.next())
+            {
+                auto* scan = std::get_if<Scan>(&*measurement);
+                if (scan == nullptr)
+                    completer->learn(std::get<ImuSample>(*measurement));
+                else if (!completer->learn(std::move(*scan)))
+                    break;
+            }
+        }
+        catch (const std::runtime_error&)
+        {
+            // Whatever ends the reading will do so here too, and is told then.
+        }
+    completer->finishLearning();
+    const bool is_end = completer->stampIsEnd().value_or(false);
+    completer->setStampIsEnd(is_end);
+    const auto& found = completer->findings();
+    warn(
+        t, completer->interval() > 0 ? "scan_times" : "scan_undistorted",
+        found.empty() ? "the points have no times, or all the same: taken as undistorted already"
+                      : found.back() + (is_end ? "; stamps are those of the ends of sweeps" : ""));
+}
+
+void RawlogSource::Impl::completeTimes(Scan& scan)
+{
+    if (!completer) learnTimes(scan.stamp);
+    if (completer->interval() > 0) completer->complete(scan);
 }
 
 bool RawlogSource::Impl::checkScanTime(const Scan& scan)

@@ -103,6 +103,7 @@ class BagSource : public ImportSource
     }
 
     double progress() const override { return reader_->progress(); }
+    std::optional<Duration> arrivalDelay() const override { return clock_.arrivalDelay(); }
 
     std::vector<std::string> findings() const override
     {

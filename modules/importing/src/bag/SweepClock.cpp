@@ -44,6 +44,21 @@ double spanOf(const RawSweep& sweep)
     return *most - *least;
 }
 
+/** Usual time from the stamp to the arrival at the recorder; nothing if the recorder's time is a
+ * copy of the stamp. */
+std::optional<Duration> arrivalDelayOf(const std::vector<const RawSweep*>& sweeps)
+{
+    std::vector<Duration> delays;
+    bool copied = true;
+    for (const RawSweep* sweep : sweeps)
+    {
+        delays.push_back(sweep->received - sweep->header);
+        copied &= std::abs(delays.back()) < 1000;
+    }
+    if (copied) return {};
+    return median(std::move(delays));
+}
+
 bool plausible(double ns)
 {
     return ns >= 2e6 && ns < static_cast<double>(kLongestSweep);
@@ -66,12 +81,8 @@ void SweepClock::learn(const std::vector<const RawSweep*>& all)
         learnAnchor(sweeps);
         return;
     }
-    findings_.push_back(
-        std::string(
-            has_field ? "the points of a sweep all have the same time"
-                      : "the points have no times") +
-        ": the sweeps are taken as already undistorted, as measured at their stamp; if they are "
-        "not, record them with a time for each point");
+    if (has_field) findings_.emplace_back("the points of a sweep all have the same time");
+    arrival_delay_ = arrivalDelayOf(all);
 }
 
 void SweepClock::learnUnit(const std::vector<const RawSweep*>& sweeps)
@@ -144,16 +155,10 @@ namespace
  * recorder's time is a copy of the stamp or of another clock. */
 std::optional<double> delayOf(const std::vector<const RawSweep*>& sweeps, Duration span)
 {
-    std::vector<Duration> delays;
-    bool copied = true;
-    for (const RawSweep* sweep : sweeps)
-    {
-        delays.push_back(sweep->received - sweep->header);
-        copied &= std::abs(delays.back()) < 1000;
-    }
-    const double share = static_cast<double>(median(std::move(delays))) /
-                         static_cast<double>(std::max<Duration>(span, 1));
-    if (copied || std::abs(share) > 5) return {};
+    const auto delay = arrivalDelayOf(sweeps);
+    const double share =
+        static_cast<double>(delay.value_or(0)) / static_cast<double>(std::max<Duration>(span, 1));
+    if (!delay || std::abs(share) > 5) return {};
     return share;
 }
 }  // namespace

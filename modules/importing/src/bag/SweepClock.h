@@ -28,6 +28,9 @@ class SweepClock
     /** What was judged, a line each. */
     const std::vector<std::string>& findings() const { return findings_; }
 
+    /** See ImportSource. */
+    std::optional<Duration> arrivalDelay() const { return arrival_delay_; }
+
  private:
     /** Where a sweep lies in time: its first and last point [ns]. */
     struct Extent
@@ -56,6 +59,7 @@ class SweepClock
     bool since_header_ = false;  //!< the points' times count from the header's stamp
     double unit_ = 1;            //!< of the points' times [ns]
     Anchor anchor_ = Anchor::None;
+    std::optional<Duration> arrival_delay_;  // of sweeps whose points have no times
     std::vector<std::string> findings_;
 };
 }  // namespace taut::bag

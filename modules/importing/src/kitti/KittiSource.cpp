@@ -258,6 +258,7 @@ std::unique_ptr<ImportSource> openKittiOdometry(
         return readPoints(file, times[*frame], [](double, double) { return Duration{0}; });
     };
     streams.next_scan = [files, read, warn] { return files->nextScan(read, warn); };
+    streams.undistorted = true;
     streams.findings = {
         std::to_string(files->size()) + " scans",
         "the benchmark has no IMU, and its scans are "

@@ -3,12 +3,14 @@
 #include <optional>
 #include <string>
 
+#include "taut/completion/TurnFinder.h"
+
 namespace taut
 {
-/** Which end of its sweep the stamp of a cloud in a bag is. */
+/** Which end of its sweep the stamp of a cloud is. */
 enum class ScanStamp
 {
-    Detect,  //!< as the times of the points tell
+    Detect,  //!< as the times of the points tell, or when the recorder got it
     Start,
     End
 };
@@ -25,6 +27,9 @@ struct ImportOptions
     std::string lidar_topic;  //!< empty: the only one of point clouds
     std::string imu_topic;    //!< empty: the only one of readings, if there is one
     ScanStamp scan_stamp = ScanStamp::Detect;
+
+    /** Clouds without times of their points. */
+    ScanTimes scan_times = ScanTimes::Auto;
 
     /** Factors to m/s^2 and rad/s; nothing: judged by gravity. */
     std::optional<double> accel_scale, gyro_scale;

@@ -38,5 +38,13 @@ class ImportSource
     /** What was found out about the recording and used, though nothing is wrong with it (topics,
      * units, what a stamp means): one line each for the summary. Complete at the end. */
     virtual std::vector<std::string> findings() const { return {}; }
+
+    /** True if the recording says that somebody undistorted its sweeps: their points get no times.
+     */
+    virtual bool isUndistorted() const { return false; }
+
+    /** Usual time from the stamp of a sweep without times of its points until the recorder got it
+     * [ns]; nothing if that is not known. Known after the first sweep. */
+    virtual std::optional<Duration> arrivalDelay() const { return {}; }
 };
 }  // namespace taut

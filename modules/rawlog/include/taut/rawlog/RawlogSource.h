@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "taut/completion/TurnFinder.h"
 #include "taut/core/Measurement.h"
 #include "taut/core/Warning.h"
 #include "taut/rawlog/Rig.h"
@@ -22,6 +23,7 @@ struct RawlogConfig
     double to_time = std::numeric_limits<double>::infinity();  //!< [s]; no scan begins later
     int only_first_n = 0;  //!< end after that many scans; 0 = all
     Rig rig;               //!< what overrides the poses, units and clocks of the log
+    ScanTimes scan_times = ScanTimes::Auto;  //!< for scans without times of their points
 };
 
 /** Whether a file begins with an object of a rawlog, gz or plain. */
@@ -57,6 +59,8 @@ bool isRawlog(const std::string& path);
  *   scan_bad_points    more than 5 % of the points not finite or with an impossible time (used)
  *   scan_point_times   less than 1 % of the points have a time that no sweep of this LiDAR can
  *                      reach, by the usual interval of its stamps: dropped (the others are used)
+ *   scan_times         all points carry the same time: their times are told from their azimuth,
+ *                      stamps being begins of sweeps unless the gyro tells otherwise (used)
  *   scan_undistorted   all points carry the same time (used, Scan::already_undistorted)
  *   rig_unused         a part of the rig describes another sensor than the one in use
  *   imu_not_found      an IMU label was asked for and the log ended without one
