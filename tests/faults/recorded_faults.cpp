@@ -193,13 +193,13 @@ std::vector<Fault> all()
          60});
     faults.push_back(
         {"AnImuThatBeginsLate", "no IMU sample before 7 s",
-         [](Items& items) { remove<ImuSample>(items, 0, kMiddle); }, 3, "late_imu", 0.3});
+         [](Items& items) { remove<ImuSample>(items, 0, kMiddle); }, 3, "late_imu", 0.01});
     faults.push_back(
-        {"NoImu", "no IMU", [](Items& items) { remove<ImuSample>(items, 0, kEnd); }, 3, "no_imu",
-         0.3});
+        {"NoImu", "no IMU", [](Items& items) { remove<ImuSample>(items, 0, kEnd); }, 0, "no_imu",
+         0.01});
     faults.push_back(
         {"AnImuThatIsNotThere", "no IMU of the log has the label asked for", [](Items&) {}, 3,
-         "imu_not_found", 0.3, "--imu NOPE"});
+         "imu_not_found", 0.01, "--imu NOPE"});
     faults.push_back(
         {"AScanWithALatePoint", "the last point of one scan is 1.8 s late",
          [](Items& items)
