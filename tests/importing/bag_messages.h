@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -56,12 +57,12 @@ class WireWriter
         number(static_cast<std::uint32_t>(blob.size()));
         body_.insert(body_.end(), blob.begin(), blob.end());
     }
-    void header(Time stamp)
+    void header(Time stamp, const std::string& frame = "os_lidar")
     {
         if (wire_ == TestWire::Ros1) number(std::uint32_t{7});  // seq
         number(static_cast<std::uint32_t>(stamp / 1'000'000'000));
         number(static_cast<std::uint32_t>(stamp % 1'000'000'000));
-        text("os_lidar");
+        text(frame);
     }
     Blob message() const
     {
@@ -99,8 +100,14 @@ struct CloudStyle
     double stamp_at = 0;       //!< place of the stamp in the sweep: 0 its start, 1 its end
     bool big_endian_data = false;
     std::string intensity_name = "intensity", ring_name = "ring", ring_type = "uint16";
-    int rows = 1;             //!< of the cloud, each padded by some bytes
-    bool with_holes = false;  //!< a NaN, and a point at the origin, after every tenth point
+    int rows = 1;                    //!< of the cloud, each padded by some bytes
+    bool with_holes = false;         //!< a NaN, and a point at the origin, after every tenth point
+    std::string frame = "os_lidar";  //!< frame_id
+    bool stamped = true;             //!< else the stamp is zero
+    double intensity_scale = 1;      //!< to what is written
+    std::vector<std::string> more_fields;  //!< float32, all zero
+    /** What the time of the i-th point becomes, if it is there. */
+    std::function<double(std::size_t i, double time)> spoil;
 };
 
 inline std::uint8_t datatypeOf(const std::string& type)
@@ -151,7 +158,7 @@ class CloudWriter
     {
         const auto width = static_cast<std::uint32_t>(points_.size()) / style_.rows;
         WireWriter out(wire_);
-        out.header(stamp_);
+        out.header(style_.stamped ? stamp_ : 0, style_.frame);
         out.number(static_cast<std::uint32_t>(style_.rows));
         out.number(width);
         out.number(static_cast<std::uint32_t>(fields_.size()));
@@ -200,14 +207,18 @@ class CloudWriter
         value(point, "y", "float32", double{from.position.y()});
         value(point, "z", "float32", double{from.position.z()});
         append(point, std::uint32_t{0xDEADBEEF});  // padding, as PCL has it
-        value(point, style_.intensity_name, "float32", double{from.intensity});
+        value(
+            point, style_.intensity_name, "float32",
+            style_.intensity_scale * double{from.intensity});
         value(point, style_.ring_name, style_.ring_type, from.ring);
         const Time since = style_.absolute ? t + style_.clock_shift : t - stamp_;
-        const double time = style_.time_unit == 1e9
-                                ? static_cast<double>(since / 1'000'000'000) +
-                                      1e-9 * static_cast<double>(since % 1'000'000'000)
-                                : static_cast<double>(since) / style_.time_unit;
+        double time = style_.time_unit == 1e9
+                          ? static_cast<double>(since / 1'000'000'000) +
+                                1e-9 * static_cast<double>(since % 1'000'000'000)
+                          : static_cast<double>(since) / style_.time_unit;
+        if (style_.spoil) time = style_.spoil(points_.size(), time);
         value(point, style_.time_name, style_.time_type, time);
+        for (const std::string& name : style_.more_fields) value(point, name, "float32", 0);
         points_.push_back(std::move(point));
     }
 
@@ -220,13 +231,14 @@ class CloudWriter
 };
 
 /** A sweep as a Livox CustomMsg. */
-inline Blob livoxMessage(const Scan& scan, TestWire wire, Duration clock_shift = 0)
+inline Blob livoxMessage(
+    const Scan& scan, TestWire wire, Duration clock_shift = 0, int lidar_id = 3)
 {
     WireWriter out(wire);
     out.header(scan.stamp);
     out.number(static_cast<std::uint64_t>(scan.stamp + clock_shift));
     out.number(static_cast<std::uint32_t>(scan.points.size()));
-    for (const int i : {3, 0, 0, 0}) out.number(static_cast<std::uint8_t>(i));
+    for (const int i : {lidar_id, 0, 0, 0}) out.number(static_cast<std::uint8_t>(i));
     out.number(static_cast<std::uint32_t>(scan.points.size()));
     for (const LidarPoint& point : scan.points)
     {

@@ -71,6 +71,7 @@ class BagSource : public ImportSource
           warn_(warn),
           reader_(std::move(reader)),
           lidar_(std::move(lidar)),
+          time_field_(options.time_field),
           clock_(options.scan_stamp, warn)
     {
         std::vector<std::string> names{lidar_.name};
@@ -108,7 +109,7 @@ class BagSource : public ImportSource
     std::vector<std::string> findings() const override
     {
         std::vector<std::string> all = judged_;
-        all.insert(all.end(), clock_.findings().begin(), clock_.findings().end());
+        for (std::string& line : clock_.findings()) all.push_back(std::move(line));
         return all;
     }
 
@@ -150,6 +151,10 @@ class BagSource : public ImportSource
             {
                 return decode(*message);
             }
+            catch (const FieldError& e)
+            {
+                throw std::runtime_error(path_ + ", " + message->topic + ": " + e.what());
+            }
             catch (const std::runtime_error& e)
             {
                 report(message->received, "message_invalid", message->topic, e.what());
@@ -163,8 +168,9 @@ class BagSource : public ImportSource
         std::vector<std::uint8_t> buffer;
         const WireReader reader(plainMessage(message.data, buffer), message.wire);
         if (imu_ && message.topic == imu_->name) return readImu(reader);
-        RawSweep sweep = lidar_.type == kCloudType ? toRawSweep(readPointCloud2(reader))
-                                                   : toRawSweep(readLivox(reader));
+        RawSweep sweep = lidar_.type == kCloudType
+                             ? toRawSweep(readPointCloud2(reader), time_field_)
+                             : toRawSweep(readLivox(reader));
         sweep.received = message.received;
         return sweep;
     }
@@ -180,7 +186,7 @@ class BagSource : public ImportSource
         }
         auto& sweep = std::get<RawSweep>(pending);
         const Time header = sweep.header;
-        if (!hasStamp(header, lidar_.name)) return {};
+        if (!clock_.knowsTimesWithoutStamps() && !hasStamp(header, lidar_.name)) return {};
         if (sweep.points.empty())
         {
             report(header, "scan_empty", lidar_.name, "a cloud has no valid point");
@@ -228,6 +234,7 @@ class BagSource : public ImportSource
     std::unique_ptr<BagReader> reader_;
     BagTopic lidar_;
     std::optional<BagTopic> imu_;
+    std::string time_field_;
     SweepClock clock_;
     std::vector<std::string> judged_;
     std::deque<Pending> ahead_;

@@ -5,6 +5,8 @@
 #include <initializer_list>
 #include <optional>
 
+#include "../TimeField.h"
+
 namespace taut::bag
 {
 namespace
@@ -66,9 +68,13 @@ class Column
 
     std::string describe() const { return field_.name + " (" + kNames[field_.datatype] + ")"; }
 
-    /** Integers have ns, floats s; a float64 has s (Hesai, RoboSense) or ns (Livox). */
+    bool isFloat32() const { return field_.datatype == kFloat32; }
+
+    /** As the name says; else integers have ns, floats s; a float64 has s (Hesai, RoboSense) or ns
+     * (Livox). */
     double nominalTimeUnit() const
     {
+        if (const double unit = unitOfName(field_.name); unit > 0) return unit;
         return field_.datatype == kFloat64 ? 0 : field_.datatype == kFloat32 ? 1e9 : 1;
     }
 
@@ -85,17 +91,32 @@ std::optional<Column> find(const PointCloud2& cloud, std::initializer_list<const
     return {};
 }
 
+std::optional<Column> findTime(const PointCloud2& cloud, const std::string& asked)
+{
+    std::vector<std::string> names;
+    for (const auto& field : cloud.fields) names.push_back(field.name);
+    int found = -1;
+    try
+    {
+        found = timeFieldOf(names, asked);
+    }
+    catch (const std::runtime_error& e)
+    {
+        throw FieldError(e.what());
+    }
+    if (found < 0) return {};
+    return Column(cloud.fields[static_cast<std::size_t>(found)], cloud);
+}
+
 struct Columns
 {
-    explicit Columns(const PointCloud2& cloud)
+    Columns(const PointCloud2& cloud, const std::string& time_field)
         : x(find(cloud, {"x"})),
           y(find(cloud, {"y"})),
           z(find(cloud, {"z"})),
           intensity(find(cloud, {"intensity", "reflectivity", "i"})),
           ring(find(cloud, {"ring", "line", "channel", "laser_id"})),
-          time(find(
-              cloud,
-              {"t", "time", "timestamp", "offset_time", "time_stamp", "time_offset", "timeOffset"}))
+          time(findTime(cloud, time_field))
     {
         if (!x || !y || !z) throw std::runtime_error("it has no fields x, y and z");
     }
@@ -138,9 +159,9 @@ std::uint16_t ringOf(double value)
 
 }  // namespace
 
-RawSweep toRawSweep(const PointCloud2& cloud)
+RawSweep toRawSweep(const PointCloud2& cloud, const std::string& time_field)
 {
-    const Columns columns(cloud);
+    const Columns columns(cloud, time_field);
     checkLayout(cloud);
     RawSweep sweep;
     sweep.header = cloud.stamp;
@@ -148,6 +169,7 @@ RawSweep toRawSweep(const PointCloud2& cloud)
     {
         sweep.time_field = columns.time->describe();
         sweep.nominal_unit = columns.time->nominalTimeUnit();
+        sweep.single_precision = columns.time->isFloat32();
     }
     for (std::uint32_t row = 0; row < cloud.height; row++)
         for (std::uint32_t column = 0; column < cloud.width; column++)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stdexcept>
 #include <vector>
 
 #include "Messages.h"
@@ -7,6 +8,12 @@
 
 namespace taut::bag
 {
+/** No cloud of the recording can be used before it is told what its fields mean. */
+struct FieldError : std::runtime_error
+{
+    using std::runtime_error::runtime_error;
+};
+
 /** A cloud whose times are still as the message has them. */
 struct RawSweep
 {
@@ -17,13 +24,14 @@ struct RawSweep
     std::vector<double> times;       //!< of the points, in the field's unit; empty if it has none
     std::string time_field;          //!< "t (uint32)"
     double nominal_unit = 1;         //!< what that field usually has [ns]; 0 if it varies
+    bool single_precision = false;   //!< that field is a float32
     int rings = 0;                   //!< as Scan::rings
     std::size_t bad_times = 0;       //!< points left out for a time that is not finite
 };
 
-/** Finds x, y, z, intensity (or reflectivity), ring (line, channel, laser_id) and time (t, time,
- * timestamp, offset_time, ...) by name. Throws std::runtime_error if the layout contradicts itself.
- */
-RawSweep toRawSweep(const PointCloud2& cloud);
+/** Finds x, y, z, intensity (or reflectivity), ring (line, channel, laser_id) and time
+ * (TimeField.h; `time_field` is the one asked for) by name. Throws std::runtime_error if the layout
+ * contradicts itself; FieldError if it is not clear which field has the times. */
+RawSweep toRawSweep(const PointCloud2& cloud, const std::string& time_field = {});
 RawSweep toRawSweep(const Livox& sweep);
 }  // namespace taut::bag

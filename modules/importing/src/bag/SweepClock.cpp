@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <stdexcept>
 
 namespace taut::bag
@@ -10,7 +11,13 @@ namespace taut::bag
 namespace
 {
 constexpr Duration kLongestSweep = 2'000'000'000;
-constexpr double kLargestTime = 2.2e18;  // ns: twice that and a stamp are within 64 bits
+constexpr Duration kLargestOverlap = 20'000'000;  // of sweeps, by jitter
+constexpr Time kYear2000 = 946'684'800'000'000'000;
+constexpr double kMostOutside = 0.05;  // of the points of a sweep: more are no mistake
+constexpr double kFinestFloat = 1e6;   // [ns] steps of a float that are told from a lack of digits
+constexpr double kCoarsestStep = 3e6;  // [ns] any other
+constexpr std::size_t kManyPoints = 1000;  // that tell steps
+constexpr double kLargestTime = 2.2e18;    // ns: twice that and a stamp are within 64 bits
 
 template <class T>
 T median(std::vector<T> values)
@@ -38,10 +45,19 @@ double unitOf(double span)
     return span < 2 ? 1e9 : span < 2e3 ? 1e6 : span < 2e6 ? 1e3 : 1;
 }
 
+/** What the points of a sweep are spread over, whatever 1 of 20 at either end says. */
 double spanOf(const RawSweep& sweep)
 {
-    const auto [least, most] = std::minmax_element(sweep.times.begin(), sweep.times.end());
-    return *most - *least;
+    std::vector<double> times = sweep.times;
+    const std::size_t last = times.size() - 1, cut = times.size() / 20;
+    const auto at = [&](std::size_t i)
+    {
+        const auto place = times.begin() + static_cast<std::ptrdiff_t>(i);
+        std::nth_element(times.begin(), place, times.end());
+        return *place;
+    };
+    const double inner = at(last - cut) - at(cut);
+    return inner * static_cast<double>(last) / static_cast<double>(last - 2 * cut);
 }
 
 /** Usual time from the stamp to the arrival at the recorder; nothing if the recorder's time is a
@@ -68,16 +84,20 @@ bool plausible(double ns)
 void SweepClock::learn(const std::vector<const RawSweep*>& all)
 {
     std::vector<const RawSweep*> sweeps;
+    std::size_t with_points = 0;
     bool has_field = false;
     for (const RawSweep* sweep : all)
     {
         has_field |= !sweep->time_field.empty();
+        with_points += sweep->times.size() > 1 ? 1 : 0;
         if (sweep->times.size() > 1 && spanOf(*sweep) > 0) sweeps.push_back(sweep);
     }
-    timed_ = !sweeps.empty();
+    timed_ = sweeps.size() >= std::min<std::size_t>(2, std::max<std::size_t>(1, with_points));
     if (timed_)
     {
         learnUnit(sweeps);
+        learnLongest(sweeps);
+        learnBase(sweeps);
         learnAnchor(sweeps);
         return;
     }
@@ -97,9 +117,10 @@ void SweepClock::learnUnit(const std::vector<const RawSweep*>& sweeps)
         if (nominal > 0) unit_ = nominal;
         if (span * unit_ >= static_cast<double>(kLongestSweep))
             throw std::runtime_error(
-                "the times of a sweep's points differ by " + std::to_string(span) +
-                ", which is no duration of a sweep in any unit");
+                "the times of a sweep's points, " + sweeps.front()->time_field + ", differ by " +
+                std::to_string(span) + ", which is no duration of a sweep in any unit");
     }
+    checkPrecision(*sweeps.front(), span);
     findings_.push_back(
         "times of the points: " + sweeps.front()->time_field + " in " + unitName(unit_) +
         (nominal > 0 && nominal != unit_ ? ", not in " + std::string(unitName(nominal)) +
@@ -108,23 +129,85 @@ void SweepClock::learnUnit(const std::vector<const RawSweep*>& sweeps)
         "; a sweep has " + milliseconds(span * unit_));
 }
 
+/** Undistortion needs the time of a point to a small part of a sweep. */
+void SweepClock::checkPrecision(const RawSweep& sweep, double span) const
+{
+    double step = 0;
+    if (sweep.single_precision)
+    {
+        const auto usual = static_cast<float>(median(sweep.times));
+        step = std::nextafter(usual, std::numeric_limits<float>::infinity()) - usual;
+    }
+    else if (sweep.times.size() >= kManyPoints)
+    {
+        std::vector<double> steps = sweep.times;
+        std::sort(steps.begin(), steps.end());
+        steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
+        step = span / static_cast<double>(steps.size());
+    }
+    if (step * unit_ <= (sweep.single_precision ? kFinestFloat : kCoarsestStep)) return;
+    throw std::runtime_error(
+        "the times of the points, " + sweep.time_field + ", come in steps of " +
+        milliseconds(step * unit_) +
+        ", too coarse to undistort by: record them as float64, or counted from the stamp. "
+        "--time-field none imports the sweeps as if they had no times");
+}
+
+/** A sweep ends before the next begins: what is longer has points with a wrong time. */
+void SweepClock::learnLongest(const std::vector<const RawSweep*>& sweeps)
+{
+    std::vector<Duration> intervals, spans;
+    for (std::size_t i = 0; i < sweeps.size(); i++)
+    {
+        spans.push_back(std::llround(spanOf(*sweeps[i]) * unit_));
+        const Duration interval = i > 0 ? sweeps[i]->header - sweeps[i - 1]->header : 0;
+        if (interval > 0 && interval < kLongestSweep) intervals.push_back(interval);
+    }
+    const Duration span = median(std::move(spans));
+    longest_ = 2 * intervals.size() < sweeps.size()
+                   ? span + span / 2
+                   : std::max(median(std::move(intervals)) + kLargestOverlap, span + span / 5);
+}
+
+/** Whether the times count from the stamp. */
+void SweepClock::learnBase(const std::vector<const RawSweep*>& sweeps)
+{
+    std::vector<double> middles;
+    bool has_base = false;
+    for (const RawSweep* sweep : sweeps)
+    {
+        middles.push_back(std::abs(median(sweep->times)));
+        has_base |= sweep->base != 0;
+    }
+    since_header_ =
+        !has_base && median(std::move(middles)) * unit_ < static_cast<double>(kLongestSweep);
+}
+
 void SweepClock::learnAnchor(const std::vector<const RawSweep*>& sweeps)
 {
-    const RawSweep& some = *sweeps.front();
-    since_header_ =
-        some.base == 0 && std::abs(some.times.front()) * unit_ < static_cast<double>(kLongestSweep);
     std::vector<double> places;
     std::vector<Duration> spans;
+    std::vector<Time> firsts;
     for (const RawSweep* sweep : sweeps)
     {
         const Extent extent = extentOf(*sweep);
+        firsts.push_back(extent.first);
         spans.push_back(extent.last - extent.first);
+        if (sweep->header == 0) continue;
         places.push_back(
             static_cast<double>(sweep->header - extent.first) /
             static_cast<double>(std::max<Duration>(spans.back(), 1)));
     }
-    const double place = median(std::move(places));
     const Duration span = median(std::move(spans));
+    if (2 * places.size() < sweeps.size() && !since_header_ &&
+        median(std::move(firsts)) > kYear2000)
+    {
+        findings_.emplace_back(
+            "stamp of a sweep: most are zero, and the times of the points, which count from 1970, "
+            "are used instead");
+        return;
+    }
+    const double place = places.empty() ? 0 : median(std::move(places));
     if (asked_ != ScanStamp::Detect)
     {
         anchor_ = asked_ == ScanStamp::Start ? Anchor::FirstPoint : Anchor::LastPoint;
@@ -209,11 +292,53 @@ Time SweepClock::timeOf(const RawSweep& sweep, double value) const
 
 SweepClock::Extent SweepClock::extentOf(const RawSweep& sweep) const
 {
-    const auto [least, most] = std::minmax_element(sweep.times.begin(), sweep.times.end());
-    return {timeOf(sweep, *least), timeOf(sweep, *most)};
+    std::vector<Time> times;
+    for (const double value : sweep.times) times.push_back(timeOf(sweep, value));
+    return extentOf(times, timeOf(sweep, median(sweep.times)));
 }
 
-Scan SweepClock::toScan(RawSweep sweep) const
+/** Without what is far from the middle, nor what is outside of the fullest stretch that a sweep can
+ * be long, if that is little: a cloud may well be of two turns. */
+SweepClock::Extent SweepClock::extentOf(const std::vector<Time>& times, Time middle) const
+{
+    Extent near{middle, middle};
+    for (const Time t : times)
+    {
+        if (std::abs(t - middle) > kLongestSweep / 2) continue;
+        near.first = std::min(near.first, t);
+        near.last = std::max(near.last, t);
+    }
+    if (near.last - near.first <= longest_) return near;
+    std::vector<Time> sorted;
+    for (const Time t : times)
+        if (near.covers(t)) sorted.push_back(t);
+    std::sort(sorted.begin(), sorted.end());
+    std::size_t begin = 0, end = 0;  // of the fullest stretch
+    for (std::size_t from = 0, to = 0; to < sorted.size(); from++)
+    {
+        while (to < sorted.size() && sorted[to] - sorted[from] <= longest_) to++;
+        if (to - from <= end - begin) continue;
+        begin = from;
+        end = to;
+    }
+    const std::size_t outside = sorted.size() - (end - begin);
+    if (end == 0 ||
+        static_cast<double>(outside) > kMostOutside * static_cast<double>(sorted.size()))
+        return near;
+    return {sorted[begin], sorted[end - 1]};
+}
+
+std::vector<std::string> SweepClock::findings() const
+{
+    std::vector<std::string> all = findings_;
+    if (left_out_ > 0)
+        all.push_back(
+            std::to_string(left_out_) + " of " + std::to_string(points_) +
+            " points have a time outside of their sweep and are left out");
+    return all;
+}
+
+Scan SweepClock::toScan(RawSweep sweep)
 {
     Scan scan;
     scan.rings = sweep.rings;
@@ -227,6 +352,8 @@ Scan SweepClock::toScan(RawSweep sweep) const
         setTimes(scan, sweep);
     const std::size_t all = sweep.times.size() + sweep.bad_times;
     const std::size_t lost = timed_ ? all - scan.points.size() : 0;
+    points_ += all;
+    left_out_ += lost;
     if (20 * lost > all && warn_)
         warn_(
             {scan.stamp, "scan_bad_points",
@@ -237,24 +364,17 @@ Scan SweepClock::toScan(RawSweep sweep) const
 
 void SweepClock::setTimes(Scan& scan, const RawSweep& sweep) const
 {
-    const Time middle = timeOf(sweep, median(sweep.times));
     std::vector<Time> times;
     for (const double value : sweep.times) times.push_back(timeOf(sweep, value));
-    const auto bad = [&](Time t) { return std::abs(t - middle) > kLongestSweep / 2; };
-    Time first = middle, last = middle;
-    for (const Time t : times)
-        if (!bad(t))
-        {
-            first = std::min(first, t);
-            last = std::max(last, t);
-        }
+    const Extent extent = extentOf(times, timeOf(sweep, median(sweep.times)));
+    const Time first = extent.first;
     for (std::size_t i = 0; i < times.size(); i++)
-        if (!bad(times[i]))
+        if (extent.covers(times[i]))
         {
             scan.points.push_back(sweep.points[i]);
             scan.points.back().offset = static_cast<std::int32_t>(times[i] - first);
         }
-    const Duration span = last - first;
+    const Duration span = extent.last - first;
     scan.stamp = anchor_ == Anchor::None         ? first
                  : anchor_ == Anchor::FirstPoint ? sweep.header
                                                  : sweep.header - span;

@@ -30,6 +30,9 @@ struct ImportOptions
 
     /** Clouds without times of their points. */
     ScanTimes scan_times = ScanTimes::Auto;
+    /** Bags and folders: name of the field or column that has the times of the points; empty: found
+     * by its name; "none": there are no times. */
+    std::string time_field;
 
     /** Factors to m/s^2 and rad/s; nothing: judged by gravity. */
     std::optional<double> accel_scale, gyro_scale;
