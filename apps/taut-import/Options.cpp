@@ -64,6 +64,11 @@ bool parseOptions(int argc, char** argv, Options& o)
         "Clouds without times of their points: azimuth tells them, or none (default auto: the "
         "azimuth of a sensor that turns, unless the clouds are undistorted already)",
         false, "auto", "auto|azimuth|none", cmd);
+    TCLAP::ValueArg<std::string> lidar_id(
+        "", "lidar-id",
+        "Bags with several LiDARs on one topic: lidar_id (Livox) or frame_id of the one to take "
+        "(default: the only one)",
+        false, "", "REGEX", cmd);
     TCLAP::ValueArg<std::string> time_field(
         "", "time-field",
         "Bags and folders: field with the times of the points, or none (default: found by its "
@@ -87,6 +92,7 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.import.imu_topic = imu_topic.getValue();
     o.import.scan_stamp = scanStamp(scan_stamp.getValue());
     o.import.scan_times = scanTimesOf(scan_times.getValue());
+    o.import.lidar_id = lidar_id.getValue();
     o.import.time_field = time_field.getValue();
     o.overwrite = overwrite.getValue();
     o.quiet = quiet.getValue();

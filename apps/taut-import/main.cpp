@@ -76,6 +76,7 @@ class Import
     {
         ImportOptions import = options_.import;
         if (rig_.imu.accel_scale != 1) import.accel_scale = rig_.imu.accel_scale;
+        import.lidar_clock_offset = rig_.lidar.clock_offset;
         if (rig_.imu.gyro_scale != 1) import.gyro_scale = rig_.imu.gyro_scale;
         return import;
     }

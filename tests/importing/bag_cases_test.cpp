@@ -186,5 +186,190 @@ TEST_F(AReportedBag, WithTooFewDigitsIsRefusedUntilToldToGoWithout)
         EXPECT_EQ(import(path, options).scans.size(), scans_.size());
     }
 }
+
+/** A bag that a script wrote topic by topic, the clouds first. */
+TestMessages topicByTopic(TestMessages clouds, const TestMessages& readings)
+{
+    clouds.insert(clouds.end(), readings.begin(), readings.end());
+    return clouds;
+}
+
+TEST_F(AReportedBag, WrittenTopicByTopicIsReadInTheOrderOfTime)
+{
+    for (const double gravity : {9.81, 1.0})
+        for (const std::string times : {"recorder", "script", "none"})
+        {
+            SCOPED_TRACE(times);
+            const auto readings = syntheticReadings(12, gravity);
+            auto all = topicByTopic(
+                sweepMessages(scans_, {}, TestWire::Cdr), readingMessages(readings, TestWire::Cdr));
+            Time written = kBagStart + 1'000'000'000'000;
+            for (TestMessage& m : all)
+                if (times != "recorder") m.received = times == "none" ? 0 : written += 1'000'000;
+            ImportOptions options;
+            const auto source = openImportSource(write(all), options, {});
+            std::optional<Time> last_sample;
+            std::size_t scans = 0, samples = 0;
+            while (const auto item = source->next())
+                if (const auto* scan = std::get_if<Scan>(&*item))
+                {
+                    scans++;
+                    ASSERT_TRUE(last_sample);
+                    EXPECT_LT(std::abs(*last_sample - scan->stamp), 300'000'000);
+                }
+                else
+                {
+                    const auto& sample = std::get<ImuSample>(*item);
+                    last_sample = sample.t;
+                    samples++;
+                    EXPECT_NEAR(sample.accel.z(), gravity == 1 ? 9.80665 : 9.81, 1e-9);
+                }
+            EXPECT_EQ(scans, scans_.size());
+            EXPECT_EQ(samples, readings.size());
+        }
+}
+
+TEST_F(AReportedBag, WhoseClocksWereSetBackStaysInOrder)
+{
+    scans_ = syntheticSweeps(60, 20);
+    readings_ = syntheticReadings(60);
+    const Duration back = 3'600'000'000'000;
+    const Time since = scans_[40].stamp;
+    auto scans = scans_;
+    auto readings = readings_;
+    for (Scan& scan : scans)
+        if (scan.stamp >= since)
+        {
+            scan.stamp -= back;
+            scan.end -= back;
+        }
+    for (ImuSample& sample : readings)
+        if (sample.t >= since) sample.t -= back;
+    const auto before = [&](const TestMessage& m)
+    { return m.received > since - back + 10'000'000'000; };
+    auto all =
+        merged(sweepMessages(scans, {}, TestWire::Cdr), readingMessages(readings, TestWire::Cdr));
+    std::stable_partition(all.begin(), all.end(), before);
+    const Imported result = import(write(all));
+    EXPECT_EQ(result.readings.size(), readings.size());
+    EXPECT_EQ(result.warnings.count("clock_back"), 2u);
+    ASSERT_EQ(result.scans.size(), scans.size());
+    for (std::size_t k = 0; k < scans.size(); k++)
+        EXPECT_LE(std::abs(result.scans[k].stamp - scans_[k].stamp), 20'000'000);
+}
+
+TEST_F(AReportedBag, OfClocksThatDifferSaysByHowMuchAndWhatCorrectsIt)
+{
+    auto scans = scans_;
+    for (Scan& scan : scans) scan.stamp += 37'000'000'000;
+    auto clouds = sweepMessages(scans, {}, TestWire::Cdr);
+    for (std::size_t k = 0; k < clouds.size(); k++) clouds[k].received = arrivalOf(scans_[k]);
+    const std::string path = write(merged(clouds, readingMessages(readings_, TestWire::Cdr)));
+    const Imported result = import(path);
+    EXPECT_EQ(result.scans.size(), scans.size());
+    ASSERT_EQ(result.warnings.count("clock_offset"), 1u);
+    EXPECT_THAT(
+        result.warnings.kept().at(0).text,
+        testing::AllOf(
+            HasSubstr("ahead of those of the IMU"), HasSubstr("TAI is ahead of UTC by: 37 s"),
+            HasSubstr("clock_offset: -36.9")));
+    ImportOptions options;
+    options.lidar_clock_offset = -37;
+    EXPECT_EQ(import(path, options).warnings.count("clock_offset"), 0u);
+}
+
+TEST_F(AReportedBag, OfTwoSensorsOnOneTopicNamesThemAndTakesTheOneAskedFor)
+{
+    TestMessages livox, clouds;
+    for (std::size_t k = 0; k < scans_.size(); k++)
+    {
+        const int id = static_cast<int>(k % 2);
+        livox.push_back(
+            {kLidarTopic, "livox_ros_driver2/CustomMsg", arrivalOf(scans_[k]),
+             livoxMessage(scans_[k], TestWire::Cdr, 0, id)});
+        CloudStyle style;
+        style.frame = id == 0 ? "front" : "rear";
+        const Scan& scan = scans_[k];
+        clouds.push_back(
+            {kLidarTopic, "sensor_msgs/PointCloud2", arrivalOf(scan),
+             CloudWriter(scan, style, TestWire::Cdr).message()});
+    }
+    std::vector<Scan> seconds;
+    for (std::size_t k = 1; k < scans_.size(); k += 2) seconds.push_back(scans_[k]);
+    for (const bool is_livox : {true, false})
+    {
+        const std::string path = write(is_livox ? livox : clouds);
+        EXPECT_THAT(
+            failure(path), testing::AllOf(
+                               HasSubstr(is_livox ? "'0', '1'" : "'front', 'rear'"),
+                               HasSubstr("--lidar-id chooses")));
+        ImportOptions options;
+        options.lidar_id = is_livox ? "1" : "re.*";
+        const Imported result = import(path, options);
+        expectSame(result.scans, seconds, 0);
+        EXPECT_EQ(result.warnings.count("second_sensor"), 1u);
+        options.lidar_id = "2";
+        EXPECT_THAT(failure(path, options), HasSubstr("'2' is no sensor"));
+    }
+}
+
+TEST_F(AReportedBag, WithOneSweepOfAnotherSensorLeavesItOut)
+{
+    auto all = messages({});
+    CloudStyle style;
+    style.frame = "camera";
+    all.insert(
+        all.begin() + 20, {kLidarTopic, "sensor_msgs/PointCloud2", all[20].received,
+                           CloudWriter(scans_[3], style, TestWire::Cdr).message()});
+    const Imported result = import(write(all));
+    expectSame(result.scans, scans_, 0);
+    EXPECT_EQ(result.warnings.count("second_sensor"), 1u);
+}
+
+TEST_F(AReportedBag, WhoseRecorderWasRestartedHasOneTopicOfTwoConnections)
+{
+    const auto all = messages({});
+    ContainerStyle style;
+    style.connections = 2;
+    writeFile(folder_ / "a.mcap", McapWriter::file(all, style));
+    const auto ros1 = merged(
+        sweepMessages(scans_, {}, TestWire::Ros1), readingMessages(readings_, TestWire::Ros1));
+    writeFile(folder_ / "a.bag", Ros1Writer::bag(ros1, style));
+    writeSqlite3Bag(folder_ / "a.db3", all, style);
+    for (const std::string name : {"a.mcap", "a.bag", "a.db3"})
+    {
+        SCOPED_TRACE(name);
+        const Imported result = import(folder_ / name);
+        expectSame(result.scans, scans_, 0);
+        EXPECT_EQ(result.readings.size(), readings_.size());
+    }
+}
+
+TEST_F(AReportedBag, WithTheSummaryInAnotherOrderIsReadTheSame)
+{
+    ContainerStyle style;
+    style.channels_first = true;
+    writeFile(folder_ / "a.mcap", McapWriter::file(messages({}), style));
+    expectSame(import(folder_ / "a.mcap").scans, scans_, 0);
+}
+
+TEST_F(AReportedBag, WithoutASerializationFormatIsReadAsCdr)
+{
+    ContainerStyle style;
+    style.serialization = "";
+    writeSqlite3Bag(folder_ / "a.db3", messages({}), style);
+    expectSame(import(folder_ / "a.db3").scans, scans_, 0);
+}
+
+TEST_F(AReportedBag, WithoutAnImuForTheFirstSecondsJudgesItsUnitsAllTheSame)
+{
+    scans_ = syntheticSweeps(60, 20);
+    const auto readings = syntheticReadings(60, 1.0);
+    ImuSamples late(readings.begin() + 400, readings.end());
+    const Imported result = import(write(
+        merged(sweepMessages(scans_, {}, TestWire::Cdr), readingMessages(late, TestWire::Cdr))));
+    ASSERT_EQ(result.readings.size(), late.size());
+    EXPECT_NEAR(result.readings[0].accel.z(), 9.80665, 1e-9);
+}
 }  // namespace
 }  // namespace taut::test

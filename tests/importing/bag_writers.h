@@ -9,6 +9,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bag_messages.h"
@@ -84,10 +85,19 @@ inline std::map<std::string, std::uint16_t> numberTopics(const TestMessages& mes
 
 struct ContainerStyle
 {
-    std::string compression;    //!< of chunks: "", bz2, lz4, zstd; of messages for sqlite3
-    std::size_t per_chunk = 5;  //!< messages in a chunk; 0: MCAP without chunks
-    bool closed = true;         //!< with index or summary
+    std::string compression;            //!< of chunks: "", bz2, lz4, zstd; of messages for sqlite3
+    std::size_t per_chunk = 5;          //!< messages in a chunk; 0: MCAP without chunks
+    bool closed = true;                 //!< with index or summary
+    std::size_t connections = 1;        //!< of each topic, that take turns
+    bool channels_first = false;        //!< MCAP: before their schemas, in the summary
+    std::string serialization = "cdr";  //!< as sqlite3 says
 };
+
+/** Number of the connection that the i-th message came by. */
+inline std::uint16_t connectionOf(std::uint16_t topic, std::size_t i, const ContainerStyle& style)
+{
+    return static_cast<std::uint16_t>(topic * style.connections + i / 7 % style.connections);
+}
 
 /** A bag of ROS 1, format 2.0. */
 class Ros1Writer
@@ -97,23 +107,23 @@ class Ros1Writer
     {
         const auto ids = numberTopics(messages);
         Blob chunks, chunk, index;
-        std::map<std::string, bool> introduced;
+        std::map<std::uint32_t, bool> introduced;
         std::uint32_t chunk_count = 0;
         for (std::size_t i = 0; i < messages.size(); i++)
         {
             const TestMessage& m = messages[i];
-            if (!introduced[m.topic])
+            const std::uint32_t id = connectionOf(ids.at(m.topic), i, style);
+            if (!std::exchange(introduced[id], true))
             {
-                const Blob connection = connectionRecord(ids.at(m.topic), m);
+                const Blob connection = connectionRecord(id, m);
                 appendBlob(chunk, connection);
                 appendBlob(index, connection);
-                introduced[m.topic] = true;
             }
             const auto seconds = static_cast<std::uint32_t>(m.received / 1'000'000'000);
             const auto nanoseconds = static_cast<std::uint32_t>(m.received % 1'000'000'000);
             Blob head;
             field(head, "op", std::uint8_t{2});
-            field(head, "conn", std::uint32_t{ids.at(m.topic)});
+            field(head, "conn", id);
             field(head, "time", std::uint64_t{nanoseconds} << 32 | seconds);
             record(chunk, head, m.data);
             if ((i + 1) % style.per_chunk != 0 && i + 1 < messages.size()) continue;
@@ -197,20 +207,20 @@ class McapWriter
         appendText(header, "ros2");
         appendText(header, "test");
         record(out, 0x01, header);
-        Blob chunk, summary;
-        std::map<std::string, bool> introduced;
+        Blob chunk, schemas, channels;
+        std::map<std::uint16_t, bool> introduced;
         for (std::size_t i = 0; i < messages.size(); i++)
         {
             const TestMessage& m = messages[i];
             Blob& to = style.per_chunk > 0 ? chunk : out;
-            if (!introduced[m.topic])
+            const std::uint16_t id = connectionOf(ids.at(m.topic), i, style);
+            if (!std::exchange(introduced[id], true))
             {
-                introduce(to, ids.at(m.topic), m, encoding);
-                introduce(summary, ids.at(m.topic), m, encoding);
-                introduced[m.topic] = true;
+                introduce(to, to, id, m, encoding);
+                introduce(schemas, channels, id, m, encoding);
             }
             Blob content;
-            append(content, ids.at(m.topic));
+            append(content, id);
             append(content, static_cast<std::uint32_t>(i));
             append(content, static_cast<std::uint64_t>(m.received));
             append(content, static_cast<std::uint64_t>(m.received));
@@ -229,7 +239,8 @@ class McapWriter
         append(footer, std::uint64_t{out.size()});
         append(footer, std::uint64_t{0});
         append(footer, std::uint32_t{0});
-        appendBlob(out, summary);
+        appendBlob(out, style.channels_first ? channels : schemas);
+        appendBlob(out, style.channels_first ? schemas : channels);
         record(out, 0x02, footer);
         appendBlob(out, magic);
         return out;
@@ -243,7 +254,8 @@ class McapWriter
         appendBlob(to, content);
     }
     static void introduce(
-        Blob& to, std::uint16_t id, const TestMessage& m, const std::string& encoding)
+        Blob& schemas, Blob& channels, std::uint16_t id, const TestMessage& m,
+        const std::string& encoding)
     {
         std::string type = m.type;
         if (encoding == "cdr") type.replace(type.find('/'), 1, "/msg/");
@@ -252,13 +264,13 @@ class McapWriter
         appendText(schema, type);
         appendText(schema, "ros2msg");
         appendText(schema, "std_msgs/Header header\n");
-        record(to, 0x03, schema);
+        record(schemas, 0x03, schema);
         append(channel, id);
         append(channel, static_cast<std::uint16_t>(id + 1));
         appendText(channel, m.topic);
         appendText(channel, encoding);
         append(channel, std::uint32_t{0});
-        record(to, 0x04, channel);
+        record(channels, 0x04, channel);
     }
     static void addChunk(Blob& to, const Blob& chunk, const std::string& compression)
     {

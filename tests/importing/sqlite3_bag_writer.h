@@ -24,23 +24,24 @@ inline void writeSqlite3Bag(
         "timestamp INTEGER NOT NULL, data BLOB NOT NULL);"
         "CREATE INDEX timestamp_idx ON messages (timestamp ASC);BEGIN");
     const auto ids = numberTopics(messages);
-    std::map<std::string, bool> introduced;
-    for (const TestMessage& m : messages)
+    std::map<int, bool> introduced;
+    for (std::size_t i = 0; i < messages.size(); i++)
     {
-        if (!introduced[m.topic])
+        const TestMessage& m = messages[i];
+        const int id = connectionOf(ids.at(m.topic), i, style) + 1;
+        if (!std::exchange(introduced[id], true))
         {
             std::string type = m.type;
             type.replace(type.find('/'), 1, "/msg/");
-            run("INSERT INTO topics VALUES(" + std::to_string(ids.at(m.topic) + 1) + ",'" +
-                m.topic + "','" + type + "','cdr','')");
-            introduced[m.topic] = true;
+            run("INSERT INTO topics VALUES(" + std::to_string(id) + ",'" + m.topic + "','" + type +
+                "','" + style.serialization + "','')");
         }
         const Blob data = compress(style.compression, m.data);
         sqlite3_stmt* insert = nullptr;
         sqlite3_prepare_v2(
             db, "INSERT INTO messages(topic_id,timestamp,data) VALUES(?,?,?)", -1, &insert,
             nullptr);
-        sqlite3_bind_int(insert, 1, ids.at(m.topic) + 1);
+        sqlite3_bind_int(insert, 1, id);
         sqlite3_bind_int64(insert, 2, m.received);
         sqlite3_bind_blob(insert, 3, data.data(), static_cast<int>(data.size()), SQLITE_STATIC);
         sqlite3_step(insert);

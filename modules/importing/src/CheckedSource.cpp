@@ -58,6 +58,7 @@ std::optional<ImportedItem> CheckedSource::next()
     while (!judged_)
     {
         auto item = nextValid();
+        if (item && samples_ == 0) return item;  // the units are not known before there are samples
         if (item) held_.push_back(std::move(*item));
         if (!item || held_scans_ >= kMostScansHeld ||
             (last_sample_ && *last_sample_ - first_sample_ >= kJudged))
@@ -122,7 +123,7 @@ std::optional<ImportedItem> CheckedSource::nextValid()
     while (auto item = nextInOrder())
         if (std::visit([this](const auto& i) { return valid(i); }, *item))
         {
-            if (!std::holds_alternative<ImuSample>(*item)) held_scans_++;
+            if (!std::holds_alternative<ImuSample>(*item) && samples_ > 0) held_scans_++;
             return item;
         }
     return {};

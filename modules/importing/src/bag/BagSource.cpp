@@ -10,6 +10,8 @@
 #include "Decompress.h"
 #include "Messages.h"
 #include "PacketSource.h"
+#include "SensorOfTopic.h"
+#include "SortedBag.h"
 #include "SweepClock.h"
 #include "TopicChoice.h"
 
@@ -66,18 +68,18 @@ class BagSource : public ImportSource
  public:
     BagSource(
         std::string path, std::unique_ptr<BagReader> reader, BagTopic lidar,
-        const ImportOptions& options, const WarningSink& warn)
+        std::optional<BagTopic> imu, const ImportOptions& options, const WarningSink& warn)
         : path_(std::move(path)),
           warn_(warn),
-          reader_(std::move(reader)),
           lidar_(std::move(lidar)),
+          imu_(std::move(imu)),
+          bag_(
+              path_, std::move(reader), lidar_, imu_, fromSeconds(options.lidar_clock_offset),
+              warn),
+          sensor_(options.lidar_id),
           time_field_(options.time_field),
           clock_(options.scan_stamp, warn)
     {
-        std::vector<std::string> names{lidar_.name};
-        imu_ = chooseTopic(reader_->topics(), {kImuType}, options.imu_topic, "--imu-topic");
-        if (imu_) names.push_back(imu_->name);
-        reader_->choose(names);
         judged_.push_back("LiDAR: topic " + describe({lidar_}));
         if (imu_) judged_.push_back("IMU: topic " + describe({*imu_}));
     }
@@ -103,12 +105,13 @@ class BagSource : public ImportSource
         }
     }
 
-    double progress() const override { return reader_->progress(); }
     std::optional<Duration> arrivalDelay() const override { return clock_.arrivalDelay(); }
+    double progress() const override { return bag_.progress(); }
 
     std::vector<std::string> findings() const override
     {
         std::vector<std::string> all = judged_;
+        all.insert(all.end(), bag_.findings().begin(), bag_.findings().end());
         for (std::string& line : clock_.findings()) all.push_back(std::move(line));
         return all;
     }
@@ -133,6 +136,9 @@ class BagSource : public ImportSource
         if (sweeps.empty()) return;
         try
         {
+            sensor_.learn(sweeps);
+            const auto other = [this](const RawSweep* sweep) { return !sensor_.isOf(*sweep); };
+            sweeps.erase(std::remove_if(sweeps.begin(), sweeps.end(), other), sweeps.end());
             clock_.learn(sweeps);
         }
         catch (const std::runtime_error& e)
@@ -144,7 +150,7 @@ class BagSource : public ImportSource
     /** The next message that is what it should be. */
     std::optional<Pending> read()
     {
-        while (auto message = reader_->next())
+        while (auto message = bag_.next())
         {
             message->received = std::clamp<Time>(message->received, 0, kLatest);
             try
@@ -185,6 +191,7 @@ class BagSource : public ImportSource
             return *sample;
         }
         auto& sweep = std::get<RawSweep>(pending);
+        if (!sensor_.takes(sweep)) return {};
         const Time header = sweep.header;
         if (!clock_.knowsTimesWithoutStamps() && !hasStamp(header, lidar_.name)) return {};
         if (sweep.points.empty())
@@ -213,6 +220,11 @@ class BagSource : public ImportSource
 
     std::optional<ImportedItem> checkedEnd()
     {
+        if (!ended_ && sensor_.others() > 0)
+            report(
+                0, "second_sensor", lidar_.name,
+                std::to_string(sensor_.others()) + " sweeps of another sensor, " +
+                    sensor_.nameOfOthers() + ", are left out");
         if (scans_ == 0)
             throw std::runtime_error(path_ + ": no sweep of " + lidar_.name + " can be used");
         if (readings_ == 0 && !ended_)
@@ -231,9 +243,10 @@ class BagSource : public ImportSource
 
     std::string path_;
     WarningSink warn_;
-    std::unique_ptr<BagReader> reader_;
     BagTopic lidar_;
     std::optional<BagTopic> imu_;
+    SortedBag bag_;
+    SensorOfTopic sensor_;
     std::string time_field_;
     SweepClock clock_;
     std::vector<std::string> judged_;
@@ -257,8 +270,11 @@ std::unique_ptr<ImportSource> openBag(
 {
     const std::string path = recording.path.string();
     auto reader = openBagReader(path, warn);
-    const BagTopic lidar = chooseLidar(path, reader->topics(), options.lidar_topic);
-    if (isPacketType(lidar.type)) return openPackets(path, std::move(reader), lidar, options, warn);
-    return std::make_unique<BagSource>(path, std::move(reader), lidar, options, warn);
+    const auto topics = topicsOf(*reader);
+    const BagTopic lidar = chooseLidar(path, topics, options.lidar_topic);
+    if (isPacketType(lidar.type))
+        return openPackets(path, std::move(reader), topics, lidar, options, warn);
+    const auto imu = chooseTopic(topics, {kImuType}, options.imu_topic, "--imu-topic");
+    return std::make_unique<BagSource>(path, std::move(reader), lidar, imu, options, warn);
 }
 }  // namespace taut

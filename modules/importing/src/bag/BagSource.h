@@ -24,6 +24,8 @@ bool isBag(const Recording& recording);
  *   scan_stamp         which end of a sweep its stamp means is contradicted or cannot be told
  *   scan_bad_points    more than 5 % of the points with an impossible time (left out)
  *   scan_empty         a cloud without a valid point (left out)
+ *   clock_offset       the stamps of the LiDAR and of the IMU are of clocks that differ
+ *   second_sensor      sweeps of another sensor on the same topic were left out
  *
  * Throws std::runtime_error, naming file and cause, if the file cannot be read as a bag or its
  * topics are ambiguous or absent; next() throws if the bag had no sweep that could be used. */

@@ -40,6 +40,7 @@ struct Channels
     {
         BagTopic topic;
         std::uint16_t schema = 0;
+        bool of_ros = false;
     };
     std::map<std::uint16_t, std::string> schemas;
     std::map<std::uint16_t, Channel> channels;
@@ -63,8 +64,7 @@ struct Channels
             channel.topic.name = readText(reader);
             const std::string encoding = readText(reader);
             channel.topic.wire = encoding == "ros1" ? Wire::Ros1 : Wire::Cdr;
-            if (encoding == "ros1" || encoding == "cdr")
-                channel.topic.type = schemas[channel.schema];
+            channel.of_ros = encoding == "ros1" || encoding == "cdr";
             channels[id] = channel;
         }
         else if (opcode == kStatistics)
@@ -86,6 +86,8 @@ struct Channels
         for (const auto& [id, channel] : channels)
         {
             list.push_back(channel.topic);
+            const auto schema = schemas.find(channel.schema);  // may come after the channel
+            if (channel.of_ros && schema != schemas.end()) list.back().type = schema->second;
             const auto count = counts.find(id);
             list.back().empty = counted && (count == counts.end() || count->second == 0);
         }

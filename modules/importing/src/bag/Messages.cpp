@@ -16,13 +16,20 @@ Time readTime(WireReader& reader)
     return seconds * 1'000'000'000 + nanoseconds;
 }
 
-/** std_msgs/Header; the frame's name is not needed: extrinsics come from the rig. */
-Time readHeader(WireReader& reader)
+/** std_msgs/Header; what the frame is comes from the rig, its name only tells sensors apart. */
+struct Header
+{
+    Time stamp = 0;
+    std::string frame;
+};
+
+Header readHeader(WireReader& reader)
 {
     if (reader.wire() == Wire::Ros1) reader.number<std::uint32_t>();  // seq
-    const Time stamp = readTime(reader);
-    reader.text();
-    return stamp;
+    Header header;
+    header.stamp = readTime(reader);
+    header.frame = reader.text();
+    return header;
 }
 
 RawPacket readVelodynePacket(WireReader& reader)
@@ -81,10 +88,17 @@ void skipNumbers(WireReader& reader, int count)
 }
 }  // namespace
 
+Time readStamp(WireReader reader)
+{
+    return readHeader(reader).stamp;
+}
+
 PointCloud2 readPointCloud2(WireReader reader)
 {
     PointCloud2 cloud;
-    cloud.stamp = readHeader(reader);
+    const Header header = readHeader(reader);
+    cloud.stamp = header.stamp;
+    cloud.frame = header.frame;
     cloud.height = reader.number<std::uint32_t>();
     cloud.width = reader.number<std::uint32_t>();
     cloud.fields.resize(reader.sequence(13));
@@ -105,10 +119,11 @@ PointCloud2 readPointCloud2(WireReader reader)
 Livox readLivox(WireReader reader)
 {
     Livox sweep;
-    sweep.stamp = readHeader(reader);
+    sweep.stamp = readHeader(reader).stamp;
     sweep.timebase = reader.number<std::uint64_t>();
-    reader.number<std::uint32_t>();                             // point_num: the sequence knows
-    for (int i = 0; i < 4; i++) reader.number<std::uint8_t>();  // lidar_id, rsvd[3]
+    reader.number<std::uint32_t>();  // point_num: the sequence knows
+    sweep.lidar_id = reader.number<std::uint8_t>();
+    for (int i = 0; i < 3; i++) reader.number<std::uint8_t>();  // rsvd
     sweep.points.resize(reader.sequence(19));
     for (auto& point : sweep.points)
     {
@@ -147,7 +162,7 @@ std::vector<RawPacket> readPackets(const std::string& type, WireReader reader)
 ImuSample readImu(WireReader reader)
 {
     ImuSample sample;
-    sample.t = readHeader(reader);
+    sample.t = readHeader(reader).stamp;
     skipNumbers(reader, 4 + 9);  // orientation and its covariance
     sample.gyro = readVector(reader);
     skipNumbers(reader, 9);

@@ -21,6 +21,7 @@ struct PointField
 struct PointCloud2
 {
     Time stamp = 0;
+    std::string frame;  //!< frame_id
     std::uint32_t height = 0, width = 0;
     std::vector<PointField> fields;
     bool big_endian = false;
@@ -41,6 +42,7 @@ struct Livox
 {
     Time stamp = 0;
     std::uint64_t timebase = 0;  //!< time of the first point [ns]
+    std::uint8_t lidar_id = 0;   //!< of the sensor
     std::vector<LivoxPoint> points;
 };
 
@@ -57,6 +59,8 @@ bool isPacketType(const std::string& type);
 bool isOusterPacketType(const std::string& type);
 
 /** All throw std::runtime_error if the bytes are no such message. */
+/** Of the std_msgs/Header that a message begins with. */
+Time readStamp(WireReader reader);
 PointCloud2 readPointCloud2(WireReader reader);
 Livox readLivox(WireReader reader);
 /** The packets of a message of such a type. */

@@ -8,6 +8,7 @@
 #include "Decompress.h"
 #include "Messages.h"
 #include "OusterDescription.h"
+#include "SortedBag.h"
 #include "TopicChoice.h"
 #include "taut/importing/pcap/PacketDecoder.h"
 #include "taut/packets/hesai/Correction.h"
@@ -39,16 +40,13 @@ class PacketSource : public ImportSource
  public:
     PacketSource(
         std::string path, std::unique_ptr<BagReader> reader, BagTopic lidar,
-        std::optional<BagTopic> imu, WarningSink warn)
+        std::optional<BagTopic> imu, Duration lidar_clock_offset, const WarningSink& warn)
         : path_(std::move(path)),
-          reader_(std::move(reader)),
           lidar_(std::move(lidar)),
           imu_(std::move(imu)),
-          warn_(std::move(warn))
+          bag_(path_, std::move(reader), lidar_, imu_, lidar_clock_offset, warn),
+          warn_(warn)
     {
-        std::vector<std::string> names{lidar_.name};
-        if (imu_) names.push_back(imu_->name);
-        reader_->choose(names);
     }
 
     /** Of what the LiDAR's topic may hold; ports are those that the decoder of an Ouster knows its
@@ -64,7 +62,7 @@ class PacketSource : public ImportSource
     {
         while (items_.empty() && !finished_)
         {
-            if (const auto message = reader_->next())
+            if (const auto message = bag_.next())
                 take(*message);
             else
                 finish();
@@ -76,12 +74,13 @@ class PacketSource : public ImportSource
         return item;
     }
 
-    double progress() const override { return reader_->progress(); }
+    double progress() const override { return bag_.progress(); }
 
     std::vector<std::string> findings() const override
     {
         std::vector<std::string> lines{"LiDAR: topic " + describe({lidar_})};
         if (imu_) lines.push_back("IMU: topic " + describe({*imu_}));
+        lines.insert(lines.end(), bag_.findings().begin(), bag_.findings().end());
         for (const auto& decoder : decoders_)
             for (std::string& line : decoder->findings()) lines.push_back(std::move(line));
         return lines;
@@ -198,9 +197,9 @@ class PacketSource : public ImportSource
     }
 
     std::string path_;
-    std::unique_ptr<BagReader> reader_;
     BagTopic lidar_;
     std::optional<BagTopic> imu_;
+    SortedBag bag_;
     WarningSink warn_;
     Decoders decoders_;
     std::uint16_t lidar_port_ = 0, imu_port_ = 0;
@@ -217,17 +216,17 @@ bool isOusterImu(const BagTopic& topic)
 }
 
 std::unique_ptr<ImportSource> openPackets(
-    const std::string& path, std::unique_ptr<BagReader> reader, const BagTopic& lidar,
-    const ImportOptions& options, const WarningSink& warn)
+    const std::string& path, std::unique_ptr<BagReader> reader, const std::vector<BagTopic>& topics,
+    const BagTopic& lidar, const ImportOptions& options, const WarningSink& warn)
 {
-    const auto topics = reader->topics();
     const auto imu = chooseImu(topics, lidar, options);
     // Other sensors have the stamps of the computer that recorded the bag.
     const bool of_one_clock = imu && isOusterImu(*imu);
     const StampClock clock = options.capture_clock ? StampClock::Capture
                              : of_one_clock        ? StampClock::Sensor
                                                    : StampClock::SensorIfClose;
-    auto source = std::make_unique<PacketSource>(path, std::move(reader), lidar, imu, warn);
+    auto source = std::make_unique<PacketSource>(
+        path, std::move(reader), lidar, imu, fromSeconds(options.lidar_clock_offset), warn);
     Decoders decoders;
     if (isOusterPacketType(lidar.type))
     {

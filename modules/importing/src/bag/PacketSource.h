@@ -23,11 +23,12 @@ bool isOusterImu(const BagTopic& topic);
  *   packets_late     columns that came after their turn was over were left out
  *   no_stamp         a reading whose stamp is zero was left out
  *   no_imu           no reading in the whole bag
+ *   clock_offset     the stamps of the LiDAR and of the IMU are of clocks that differ
  *
  * Throws std::runtime_error, naming file and cause, if an Ouster's description is not there or not
  * that of the sensor, or the topic of the IMU is ambiguous; next() does if no packet could be
  * decoded. */
 std::unique_ptr<ImportSource> openPackets(
-    const std::string& path, std::unique_ptr<BagReader> reader, const BagTopic& lidar,
-    const ImportOptions& options, const WarningSink& warn);
+    const std::string& path, std::unique_ptr<BagReader> reader, const std::vector<BagTopic>& topics,
+    const BagTopic& lidar, const ImportOptions& options, const WarningSink& warn);
 }  // namespace taut::bag

@@ -165,6 +165,7 @@ RawSweep toRawSweep(const PointCloud2& cloud, const std::string& time_field)
     checkLayout(cloud);
     RawSweep sweep;
     sweep.header = cloud.stamp;
+    sweep.sensor = cloud.frame;
     if (columns.time)
     {
         sweep.time_field = columns.time->describe();
@@ -193,6 +194,7 @@ RawSweep toRawSweep(const Livox& livox)
     if (livox.timebase > kLargestTime) throw std::runtime_error("its timebase is not a time");
     RawSweep sweep;
     sweep.header = livox.stamp;
+    sweep.sensor = std::to_string(livox.lidar_id);
     sweep.base = static_cast<Time>(livox.timebase);
     sweep.time_field = "offset_time (uint32)";
     for (const LivoxPoint& from : livox.points)

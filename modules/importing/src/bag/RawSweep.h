@@ -17,9 +17,10 @@ struct FieldError : std::runtime_error
 /** A cloud whose times are still as the message has them. */
 struct RawSweep
 {
-    Time header = 0;    //!< stamp of the message
-    Time received = 0;  //!< when the recorder took it
-    Time base = 0;      //!< to add to the points' times [ns]; 0 if those are all there is
+    Time header = 0;     //!< stamp of the message
+    Time received = 0;   //!< when the recorder took it
+    Time base = 0;       //!< to add to the points' times [ns]; 0 if those are all there is
+    std::string sensor;  //!< lidar_id of Livox, or frame_id
     std::vector<LidarPoint> points;  //!< finite, not at the origin; offsets not set
     std::vector<double> times;       //!< of the points, in the field's unit; empty if it has none
     std::string time_field;          //!< "t (uint32)"

@@ -23,6 +23,23 @@ std::regex compile(const std::string& expression, const std::string& option)
 }
 }  // namespace
 
+std::vector<BagTopic> topicsOf(BagReader& reader)
+{
+    std::vector<BagTopic> topics;
+    for (BagTopic& topic : reader.topics())
+    {
+        const auto same = std::find_if(
+            topics.begin(), topics.end(),
+            [&](const BagTopic& other)
+            { return other.name == topic.name && other.type == topic.type; });
+        if (same == topics.end())
+            topics.push_back(std::move(topic));
+        else
+            same->empty &= topic.empty;
+    }
+    return topics;
+}
+
 std::string describe(const std::vector<BagTopic>& topics)
 {
     std::string text;

@@ -22,6 +22,9 @@ std::optional<BagTopic> chooseTopic(
     const std::vector<BagTopic>& topics, const std::vector<std::string>& types,
     const std::string& expression, const std::string& option);
 
+/** The topics of a bag, those once that several connections wrote to. */
+std::vector<BagTopic> topicsOf(BagReader& reader);
+
 /** "/a (pkg/A), /b (pkg/B)", or "none". */
 std::string describe(const std::vector<BagTopic>& topics);
 }  // namespace taut::bag

@@ -34,6 +34,14 @@ struct ImportOptions
      * by its name; "none": there are no times. */
     std::string time_field;
 
+    /** Bags with the sweeps of several sensors on one topic: the lidar_id of Livox, or the frame_id
+     * of the clouds. Empty: there is one. */
+    std::string lidar_id;
+
+    /** What will be added to the LiDAR's stamps after the import [s]: clocks are compared with it.
+     */
+    double lidar_clock_offset = 0;
+
     /** Factors to m/s^2 and rad/s; nothing: judged by gravity. */
     std::optional<double> accel_scale, gyro_scale;
 };
