@@ -87,6 +87,87 @@ TEST(TheUnitsOfAnImu, AreFoundAndConvertedAndSaid)
         }
 }
 
+/** 100 Hz; goes to and fro by `force` m/s^2 while it turns, without gravity. */
+std::vector<ImportedItem> linearAccelerations(double force)
+{
+    std::vector<ImportedItem> items{Scan{}};
+    for (int i = 0; i < 400; i++)
+    {
+        const double t = 0.01 * i;
+        ImuSample s;
+        s.t = i * 10'000'000LL;
+        s.gyro = Vector3d(0.3 * std::cos(2 * t), 0.2, 0.5 * std::sin(3 * t));
+        s.accel = force * Vector3d(std::sin(9 * t), std::cos(7 * t), 0.5 * std::sin(11 * t + 1));
+        items.emplace_back(s);
+    }
+    return items;
+}
+
+TEST(TheUnitsOfAnImu, WithoutGravityAreNotMadeUp)
+{
+    for (const double force : {0.9, 1.3, 1.7, 2.4})
+    {
+        const Outcome o = check(linearAccelerations(force));
+        EXPECT_NEAR(o.imu[100].accel.x(), force * std::sin(9.0), 1e-9);  // as it was
+        ASSERT_EQ(o.warnings.count("imu_units"), 1U) << force;
+        EXPECT_THAT(o.warnings.kept().at(0).text, HasSubstr("near gravity in no unit"));
+    }
+    EXPECT_THAT(
+        check(linearAccelerations(0.9)).warnings.kept().at(0).text,
+        HasSubstr("as if gravity was taken out"));
+    ImportOptions options;
+    options.accel_scale = 1.0;
+    EXPECT_EQ(check(linearAccelerations(0.9), options).warnings.counts().size(), 0U);
+}
+
+TEST(TheUnitsOfAnImu, AreThoseOfAViolentMotionToo)
+{
+    for (const double unit : {1.0, 9.80665})
+    {
+        auto items = linearAccelerations(8);
+        Matrix3d R = Matrix3d::Identity();
+        for (auto& item : items)
+            if (auto* s = std::get_if<ImuSample>(&item))
+            {
+                s->accel = (s->accel + R.transpose() * Vector3d(0, 0, 9.81)) / unit;
+                R = R * expSO3(s->gyro * 0.01);
+            }
+        const Outcome o = check(std::move(items));
+        EXPECT_EQ(o.warnings.counts().size(), 0U);
+        EXPECT_THAT(
+            o.findings,
+            Contains(HasSubstr(unit == 1 ? "force in m/s^2 (" : "force in g, converted")));
+    }
+}
+
+TEST(Clocks, OfSensorsThatWereNotRecordedAtTheSameTimeAreTold)
+{
+    const auto recorded = [](Duration ahead)
+    {
+        std::vector<ImportedItem> items;
+        for (int i = 0; i < 600; i++)
+        {
+            ImuSample s;
+            s.t = 1'700'000'000'000'000'000 + i * 10'000'000LL;
+            s.accel = Vector3d(0, 0, 9.81);
+            items.emplace_back(s);
+            if (i % 10 != 9) continue;
+            Scan scan;
+            scan.stamp = scan.end = s.t + ahead;
+            items.emplace_back(scan);
+        }
+        return items;
+    };
+    EXPECT_EQ(check(recorded(0)).warnings.counts().size(), 0U);
+    EXPECT_EQ(check(recorded(2'000'000'000)).warnings.counts().size(), 0U);
+    const Outcome o = check(recorded(37'000'000'000));
+    ASSERT_EQ(o.warnings.count("clock_offset"), 1U);
+    EXPECT_THAT(o.warnings.kept().at(0).text, HasSubstr("clock_offset: -37.0"));
+    ImportOptions options;
+    options.lidar_clock_offset = -37;
+    EXPECT_EQ(check(recorded(37'000'000'000), options).warnings.counts().size(), 0U);
+}
+
 TEST(TheUnitsOfAnImu, ThatShowLaterThanTheRestGiveAWarning)
 {
     EXPECT_TRUE(check(samples(4, 8, 1, 1, 0)).warnings.counts().empty());

@@ -25,6 +25,21 @@ Vector3d meanAccel(const ImuSamples& samples, std::size_t begin, std::size_t end
     return sum / static_cast<double>(end - begin);
 }
 
+/** Norm of the mean force in the frame of the first sample, by the rates: what oscillates goes
+ * away, gravity stays. */
+double steadyForce(const ImuSamples& samples, double gyro_scale)
+{
+    Matrix3d R = Matrix3d::Identity();
+    Vector3d sum = samples.front().accel;
+    for (std::size_t i = 1; i < samples.size(); i++)
+    {
+        const double dt = toSeconds(samples[i].t - samples[i - 1].t);
+        R = R * expSO3(samples[i].gyro * (gyro_scale * dt));
+        sum += R * samples[i].accel;
+    }
+    return sum.norm() / static_cast<double>(samples.size());
+}
+
 /** Angle between `after` and where the rates from sample `begin` to `end` turn `before`. */
 double turnError(
     const ImuSamples& samples, std::size_t begin, std::size_t end, double gyro_scale,
@@ -70,6 +85,8 @@ void ImuUnitJudge::closeWindow()
         const auto error = [&](double scale)
         { return turnError(window_, n / 6, n - 1 - n / 6, scale, before, after); };
         const double rad = error(1), deg = error(kDegree);
+        steady_ += std::max(steadyForce(window_, 1), steadyForce(window_, kDegree));
+        seconds_++;
         // At rest a bias turns as if it were a rate in rad/s that is too high.
         const double turned = std::atan2(before.cross(after).norm(), before.dot(after));
         if (gravity_alone && rad > std::max(turned > kTurn ? kTurn : kBiasTurn, kClear * deg))
@@ -89,11 +106,32 @@ bool ImuUnitJudge::gyroInDegrees() const
     return tooFastForRadians() || seconds_deg_ > 2 * seconds_rad_;
 }
 
+/** Whether the force is such as gravity in this unit makes it: a body that moves may have a mean
+ * norm near 1 m/s^2 without gravity, too. */
+bool ImuUnitJudge::showsGravity(const Unit& unit) const
+{
+    const double gravity = kStandardGravity / unit.factor;
+    const auto near = [&](double value, double most)
+    { return value > 0.75 * gravity && value < most * gravity; };
+    return near(meanForce(), 1.6) &&
+           (seconds_ == 0 || near(steady_ / static_cast<double>(seconds_), 1.35));
+}
+
 ImuUnits ImuUnitJudge::units() const
 {
     ImuUnits units;
     units.accel = accelUnit(meanForce());
     units.accel_reason = format("its norm has a mean of %.4g", meanForce());
+    if (units.accel.known() && units.accel.factor != 1 && !showsGravity(units.accel))
+    {
+        units.accel = {"unknown", 1};
+        units.accel_reason += seconds_ == 0
+                                  ? std::string()
+                                  : format(
+                                        ", and %.4g of it stay while the body turns, as if gravity "
+                                        "was taken out: the raw specific force is needed",
+                                        steady_ / static_cast<double>(seconds_));
+    }
     if (gyroInDegrees())
     {
         units.gyro = {"deg/s", kDegree};

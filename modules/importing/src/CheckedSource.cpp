@@ -1,7 +1,10 @@
 #include "CheckedSource.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
+
+#include "taut/core/format.h"
 
 namespace taut
 {
@@ -9,7 +12,7 @@ namespace
 {
 constexpr Duration kJudged = 2'000'000'000;
 constexpr std::size_t kMostScansHeld = 25;
-constexpr std::size_t kFewestSamples = 10;
+constexpr std::size_t kFewestSamples = 10, kFewestScans = 3;
 
 std::string line(const std::string& what, const Unit& unit, const std::string& reason)
 {
@@ -123,7 +126,9 @@ std::optional<ImportedItem> CheckedSource::nextValid()
     while (auto item = nextInOrder())
         if (std::visit([this](const auto& i) { return valid(i); }, *item))
         {
-            if (!std::holds_alternative<ImuSample>(*item) && samples_ > 0) held_scans_++;
+            if (std::holds_alternative<ImuSample>(*item)) return item;
+            if (scans_++ == 0) first_scan_ = *last_scan_;
+            if (samples_ > 0) held_scans_++;
             return item;
         }
     return {};
@@ -186,6 +191,7 @@ void CheckedSource::finish()
     if (std::exchange(finished_, true)) return;
     if (!last_scan_) throw std::runtime_error("no scan in '" + path_ + "' can be used");
     if (samples_ < kFewestSamples) return;
+    compareSpans();
     const ImuUnits all = judge_.units();
     const auto contradict = [this](
                                 const std::string& what, const std::string& taken,
@@ -200,6 +206,24 @@ void CheckedSource::finish()
         contradict("the rates", units_.gyro.name, all.gyro.name, all.gyro_reason);
     if (!options_.accel_scale && all.accel.factor != units_.accel.factor)
         contradict("the forces", units_.accel.name, all.accel.name, all.accel_reason);
+}
+
+/* Sensors that were recorded together were recorded at the same time. */
+void CheckedSource::compareSpans() const
+{
+    const Duration offset = fromSeconds(options_.lidar_clock_offset);
+    const Time first = first_scan_ + offset, last = *last_scan_ + offset;
+    const Duration common = std::min(last, *last_sample_) - std::max(first, first_sample_);
+    const Duration shorter = std::min(last - first, *last_sample_ - first_sample_);
+    if (scans_ < kFewestScans || 2 * common >= shorter) return;
+    warn(
+        first, "clock_offset",
+        format(
+            "by their stamps, the LiDAR was recorded from %.3f to %.3f s and the IMU from %.3f to "
+            "%.3f s: if these were the same time, a rig file (-r) with lidar: {clock_offset: %.3f} "
+            "or so corrects that",
+            toSeconds(first), toSeconds(last), toSeconds(first_sample_), toSeconds(*last_sample_),
+            toSeconds(first_sample_ - first_scan_)));
 }
 
 std::vector<std::string> CheckedSource::findings() const

@@ -14,8 +14,10 @@ namespace taut
 {
 /** Stands before every source: judges the units of the IMU by its first 2 s and converts to m/s^2
  * and rad/s, and lets nothing pass that goes back in time or is not finite. Throws at the end if
- * there was no scan. Warnings: imu_units     values that fit no unit, or another one than the first
- * seconds said stamp_outlier, imu_order, clock_back   see StampOrder
+ * there was no scan. Warnings:
+ *   imu_units     values that fit no unit, or another one than the first seconds said
+ *   clock_offset  both sensors were recorded at different times, by their stamps
+ *   stamp_outlier, imu_order, clock_back   see StampOrder
  *   imu_time      stamp of the IMU equal to or earlier than the one before (left out)
  *   imu_invalid   values that are not finite (left out)
  *   scan_time     stamp of a scan equal to or earlier than the one before (left out) */
@@ -45,6 +47,7 @@ class CheckedSource : public ImportSource
     void judge();
     void convert(ImuSample& sample);
     void finish();
+    void compareSpans() const;
     void warn(Time t, const std::string& kind, const std::string& text) const;
 
     std::string path_;
@@ -57,9 +60,10 @@ class CheckedSource : public ImportSource
     std::deque<ImportedItem> held_;  // until the units are known
     bool judged_ = false, finished_ = false, too_fast_ = false;
     ImuUnitJudge judge_;
-    std::size_t samples_ = 0, held_scans_ = 0;
+    std::size_t samples_ = 0, scans_ = 0, held_scans_ = 0;
     Time first_sample_ = 0;
     ImuUnits units_;
     std::optional<Time> last_sample_, last_scan_;
+    Time first_scan_ = 0;
 };
 }  // namespace taut

@@ -54,11 +54,14 @@ class ImuUnitJudge
 
  private:
     void closeWindow();
+    bool showsGravity(const Unit& unit) const;
 
     ImuSamples window_;
     std::size_t samples_ = 0;
-    double force_ = 0;                               // sum of norms
-    std::size_t too_fast_ = 0;                       // samples, for rad/s
+    double force_ = 0;          // sum of norms
+    double steady_ = 0;         // of what stays of the force while the body turns, by second
+    std::size_t seconds_ = 0;   // that told it
+    std::size_t too_fast_ = 0;  // samples, for rad/s
     std::size_t seconds_rad_ = 0, seconds_deg_ = 0;  // that speak for the unit
 };
 }  // namespace taut
