@@ -198,6 +198,79 @@ TEST_F(AnOusterCapture, WithTheDescriptionOfAnotherSensorIsRefused)
     EXPECT_EQ(refusal([](auto&) {}), "");
 }
 
+TEST_F(AnOusterCapture, WithForeignDatagramsToItsPortLeavesThemOut)
+{
+    {
+        PcapWriter pcap(folder_ / "a.pcap");
+        pcap.from = 0xc0a80107;
+        pcap.write(kStart - kMillisecond, 7502, std::vector<std::uint8_t>(544, 7));  // DDS
+        pcap.from = 0xc0a801c9;
+        write(sensor_, pcap, 2);
+    }
+    describe(sensor_, folder_ / "a.json");
+    const Imported all = import();
+    ASSERT_EQ(all.scans.size(), 2U) << all.failure;
+    expectPoints(sensor_, 1, all.scans[1]);
+    EXPECT_EQ(all.warnings.counts().size(), all.warnings.count("no_imu"));
+    EXPECT_THAT(
+        all.findings, testing::Contains(HasSubstr("1 datagrams to the ports of the Ouster")));
+}
+
+TEST_F(AnOusterCapture, IsThatOfTheSenderThatTheDescriptionIsOf)
+{
+    sensor_.profile = "RNG19_RFL8_SIG16_NIR16";
+    OusterSimulator other = sensor_;
+    other.serial = 17;
+    other.range_mm = [](int, int, int) { return 4000U; };
+    const ImuSample sample{6'000'000'000, {0.1, -0.2, 3}, {0.5, 1, 9.7}};
+    {
+        PcapWriter pcap(folder_ / "a.pcap");
+        for (int frame = 0; frame < 3; frame++)
+            for (int i = 0; i < sensor_.packetsPerFrame(); i++)
+            {
+                const Time t = kStart + sensor_.columnTime(frame, i * 16) - sensor_.device_start;
+                pcap.from = 0xc0a80107;
+                pcap.write(t, 7503, OusterSimulator::imuPacket({}));
+                pcap.write(t, 7502, other.packet(frame, i));
+                pcap.from = 0xc0a801c9;
+                pcap.write(t, 7502, sensor_.packet(frame, i));
+            }
+        pcap.write(kStart + 200 * kMillisecond, 7503, OusterSimulator::imuPacket(sample));
+    }
+    describe(sensor_, folder_ / "a.json");
+    const Imported all = import();
+    ASSERT_EQ(all.scans.size(), 3U) << all.failure;
+    for (int frame = 0; frame < 3; frame++) expectPoints(sensor_, frame, all.scans[frame]);
+    EXPECT_EQ(all.imu.size(), 1U);
+    EXPECT_EQ(all.warnings.count("second_sensor"), 1U);
+    EXPECT_THAT(all.warnings.kept().at(0).text, HasSubstr("192.168.1.7"));
+}
+
+TEST_F(AnOusterCapture, OfPacketsThatCameTwiceOrSwappedIsTheSame)
+{
+    {
+        PcapWriter pcap(folder_ / "a.pcap");
+        const int n = sensor_.packetsPerFrame();
+        for (int k = 0; k < 3 * n; k++)
+        {
+            const int swapped = k % n == 0 ? k + 1 : k % n == 1 ? k - 1 : k;
+            for (int copy = 0; copy < 2; copy++)
+                pcap.write(kStart, 7502, sensor_.packet(swapped / n, swapped % n));
+        }
+    }
+    describe(sensor_, folder_ / "a.json");
+    const Imported all = import();
+    ASSERT_EQ(all.scans.size(), 3U) << all.failure;
+    for (const Scan& scan : all.scans)
+    {
+        EXPECT_EQ(scan.points.size(), all.scans[0].points.size());
+        EXPECT_EQ(scan.end - scan.stamp, (sensor_.columns - 1) * sensor_.columnPeriod());
+        for (const LidarPoint& point : scan.points) ASSERT_GE(point.offset, 0);
+    }
+    EXPECT_EQ(all.scans[1].stamp - all.scans[0].stamp, 100 * kMillisecond);
+    EXPECT_THAT(all.findings, testing::Contains(HasSubstr("12 packets came twice")));
+}
+
 TEST_F(AnOusterCapture, WithPacketsLeftOutStillEnds)
 {
     {
@@ -245,6 +318,19 @@ TEST(AnOusterDescription, NamesWhatIsWrongInIt)
     EXPECT_THAT(with("beam_azimuth_angles", "no"), HasSubstr("not of the right type"));
     EXPECT_THAT(with("imu_to_sensor_transform", {1, 2}), HasSubstr("no 4 x 4 matrix"));
     EXPECT_THAT(with("imu_to_sensor_transform", std::vector<double>(16, 1)), HasSubstr("no rigid"));
+}
+
+TEST(AnOusterDescription, OfOldFirmwareTakesTheUsualBeamOrigin)
+{
+    auto j = OusterSimulator().description();
+    j.erase("lidar_origin_to_beam_origin_mm");
+    for (const auto& [model, origin] :
+         {std::pair("OS-0-128", 0.02767), std::pair("OS-1-64", 0.015806),
+          std::pair("OS-2-32", 0.013762), std::pair("", 0.012163)})
+    {
+        j["prod_line"] = model;
+        EXPECT_NEAR(parseSensorInfo(j.dump()).beam_origin.x(), origin, 1e-9) << model;
+    }
 }
 
 TEST(AnOusterDescription, OfNewFirmwareIsReadFromItsSections)

@@ -75,6 +75,34 @@ TEST_F(AVelodyneCapture, IsCutWhereTheAzimuthWrapsAndKeepsEveryPacket)
     }
 }
 
+TEST_F(AVelodyneCapture, OfPacketsThatCameTwiceOrSwappedHasTheSameSweeps)
+{
+    for (const Model model : {Model::Vlp16, Model::Hdl32})
+    {
+        const auto sent = packets(model, kStart, 300);
+        write(sent);
+        const Imported right = importAll(path_);
+        auto twice = sent;
+        for (std::size_t i = 1; i < twice.size(); i += 3) std::swap(twice[i - 1], twice[i]);
+        for (std::size_t i = twice.size(); i-- > 0;)
+            twice.insert(twice.begin() + static_cast<std::ptrdiff_t>(i), twice[i]);
+        write(twice);
+        const Imported all = importAll(path_);
+        ASSERT_EQ(all.packet_scans.size(), right.packet_scans.size());
+        std::size_t packets_read = 0;
+        for (std::size_t k = 0; k < right.packet_scans.size(); k++)
+        {
+            packets_read += all.packet_scans[k].packets.size();
+            EXPECT_NEAR(
+                static_cast<double>(all.packet_scans[k].packets.size()),
+                static_cast<double>(right.packet_scans[k].packets.size()), 2);
+        }
+        EXPECT_EQ(packets_read, sent.size());
+        EXPECT_THAT(all.findings, testing::Contains(HasSubstr("300 packets came twice")));
+        EXPECT_EQ(all.warnings.counts().size(), 0U);
+    }
+}
+
 /** A pcap file of one packet over Ethernet, byte by byte, captured at 1700000001.5 s. */
 std::string capturedByHand()
 {

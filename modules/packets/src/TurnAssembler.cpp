@@ -11,6 +11,8 @@ namespace
 constexpr int kFullTurn = 36000;                // [0.01 deg]
 constexpr int kGap = 3000;                      // [0.01 deg] more than between two blocks
 constexpr Duration kLongestTurn = 250'000'000;  // 5 Hz is the slowest turn
+constexpr Duration kJitter = 200'000;           // of the times of blocks in order
+constexpr Duration kLatest = 50'000'000;        // a block that is no sign of another clock
 constexpr std::size_t kMostPoints = 2'000'000;  // whatever the clock says
 
 /** A difference of azimuths, -18000 to 17999. */
@@ -22,8 +24,14 @@ int wrapped(int difference)
 
 void TurnAssembler::beginBlock(int azimuth, Time t, std::vector<Scan>& complete)
 {
-    if (last_azimuth_ >= 0) step(azimuth, complete);
-    last_azimuth_ = azimuth;
+    // Packets may be captured in another order than they were sent.
+    const bool late = last_azimuth_ >= 0 && last_ - t > kJitter && last_ - t < kLatest;
+    if (!late)
+    {
+        if (last_azimuth_ >= 0) step(azimuth, complete);
+        last_azimuth_ = azimuth;
+        last_ = t;
+    }
     if (std::abs(t - base_) > kLongestTurn || points_.size() >= kMostPoints) close(complete);
     if (points_.empty()) base_ = t;
 }

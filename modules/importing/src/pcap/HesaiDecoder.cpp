@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "HesaiCorrection.h"
+#include "Repetition.h"
 #include "SweepStamps.h"
 #include "taut/importing/pcap/PacketDecoder.h"
 #include "taut/packets/hesai/FrameAssembler.h"
@@ -37,6 +38,7 @@ class HesaiDecoder : public PacketDecoder
 
     void add(const UdpDatagram& datagram, ImportedItems& items) override
     {
+        if (repetition_.is(datagram.payload)) return;
         const auto* packet = datagram.payload.data();
         const std::size_t bytes = datagram.payload.size();
         const hesai::PacketInfo info = hesai::packetInfo(packet, bytes);
@@ -61,12 +63,14 @@ class HesaiDecoder : public PacketDecoder
     std::vector<std::string> findings() const override
     {
         if (packets_ == 0) return {};
-        return {
+        std::vector<std::string> lines{
             "Hesai " + hesai::nameOf(info_.model) + ", " + returnsText(info_.returns) + ": " +
                 std::to_string(packets_) + " packets",
             angles_.path.empty() ? "angles: the data sheet's; --hesai-csv gives the sensor's own"
                                  : "angles: " + angles_.path,
             stamps_.finding()};
+        repetition_.report(lines);
+        return lines;
     }
 
  private:
@@ -81,6 +85,7 @@ class HesaiDecoder : public PacketDecoder
     }
 
     std::string recording_, correction_;
+    Repetition repetition_;
     SweepStamps stamps_;
     std::size_t packets_ = 0;
     hesai::PacketInfo info_;  // of the first packet

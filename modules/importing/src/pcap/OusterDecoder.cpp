@@ -1,3 +1,4 @@
+#include "Repetition.h"
 #include "SweepStamps.h"
 #include "taut/importing/pcap/PacketDecoder.h"
 #include "taut/packets/ouster/Decoder.h"
@@ -22,8 +23,20 @@ class OusterDecoder : public PacketDecoder
                datagram.to_port == info_.lidar_port || datagram.to_port == info_.imu_port;
     }
 
+    bool isOfItsKind(const UdpDatagram& datagram) const override
+    {
+        return isImu(datagram) || datagram.payload.size() == ouster::lidarPacketBytes(info_);
+    }
+
+    std::string misfit(const UdpDatagram& datagram) const override
+    {
+        if (isImu(datagram)) return {};
+        return ouster::misfit(info_, datagram.payload.data(), datagram.payload.size());
+    }
+
     void add(const UdpDatagram& datagram, ImportedItems& items) override
     {
+        if (repetition_.is(datagram.payload)) return;
         if (isImu(datagram))
             addImu(datagram, items);
         else
@@ -58,6 +71,7 @@ class OusterDecoder : public PacketDecoder
             lines.push_back(
                 std::to_string(incomplete_) + " turns of " + std::to_string(turns_) +
                 " have fewer than " + std::to_string(info_.columns_per_frame) + " columns");
+        repetition_.report(lines);
         lines.push_back(stamps_.finding());
         return lines;
     }
@@ -99,6 +113,7 @@ class OusterDecoder : public PacketDecoder
     }
 
     ouster::SensorInfo info_;
+    Repetition repetition_;
     ouster::FrameAssembler frames_;
     SweepStamps stamps_;
     std::size_t lidar_packets_ = 0, imu_packets_ = 0, turns_ = 0, incomplete_ = 0;

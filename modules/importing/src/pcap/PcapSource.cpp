@@ -14,6 +14,7 @@ namespace taut
 namespace
 {
 constexpr std::uint16_t kOusterPort = 7502;
+constexpr std::size_t kSmallestLidar = 100;  // more than a packet of an IMU
 constexpr std::size_t kLargestPlain = 1472;  // payload of one Ethernet frame
 
 /** The sensors and other senders of a capture, as far as they were seen. */
@@ -26,7 +27,11 @@ class PcapSource : public ImportSource
         const StampClock clock = options.capture_clock ? StampClock::Capture : StampClock::Sensor;
         addSensor(makeVelodyneDecoder(clock, true));
         if (const auto info = findDescription(recording.path, options))
+        {
             addSensor(makeOusterDecoder(*info, clock));
+            sensors_.back().from = senderOf(*sensors_.back().decoder);
+            sensors_.back().unknown = !sensors_.back().from;
+        }
         addSensor(makeHesaiDecoder(path_, options.hesai_csv, clock));
     }
 
@@ -51,7 +56,13 @@ class PcapSource : public ImportSource
     {
         std::vector<std::string> lines;
         for (const Sensor& sensor : sensors_)
+        {
             for (auto& line : sensor.decoder->findings()) lines.push_back(std::move(line));
+            if (sensor.decoded > 0 && sensor.foreign > 0)
+                lines.push_back(
+                    std::to_string(sensor.foreign) + " datagrams to the ports of the " +
+                    sensor.decoder->make() + " are of something else and are left out");
+        }
         return lines;
     }
 
@@ -60,13 +71,25 @@ class PcapSource : public ImportSource
     {
         std::unique_ptr<PacketDecoder> decoder;
         std::optional<std::uint32_t> from;
-        std::size_t decoded = 0, bad = 0, others = 0;
+        std::size_t decoded = 0, bad = 0, others = 0, foreign = 0;
+        bool unknown = false;  // described, but none of the senders is
     };
 
     void addSensor(std::unique_ptr<PacketDecoder> decoder)
     {
         sensors_.emplace_back();
         sensors_.back().decoder = std::move(decoder);
+    }
+
+    /** The first one in the capture whose packets can be of that sensor and no other. */
+    std::optional<std::uint32_t> senderOf(const PacketDecoder& decoder) const
+    {
+        PcapReader reader(path_);
+        const auto lidar_bytes = [&](const UdpDatagram& d)
+        { return decoder.recognises(d) && d.payload.size() > kSmallestLidar; };
+        while (const auto datagram = reader.next())
+            if (lidar_bytes(*datagram) && decoder.misfit(*datagram).empty()) return datagram->from;
+        return {};
     }
 
     std::optional<ouster::SensorInfo> findDescription(
@@ -96,7 +119,17 @@ class PcapSource : public ImportSource
 
     void decode(const UdpDatagram& datagram, Sensor& sensor)
     {
-        if (sensor.from && *sensor.from != datagram.from)
+        const std::string misfit = sensor.decoder->misfit(datagram);
+        if (first_cause_.empty()) first_cause_ = misfit;
+        const bool is_from_another = sensor.from && *sensor.from != datagram.from;
+        if (!sensor.decoder->isOfItsKind(datagram))
+        {
+            sensor.foreign++;
+            if (sensor.from && !is_from_another)
+                warn({datagram.captured, "packet_invalid", misfit});
+            return;
+        }
+        if (is_from_another || !misfit.empty())
         {
             if (sensor.others++ == 0) second_ = datagram.from;
             return;
@@ -128,6 +161,9 @@ class PcapSource : public ImportSource
         finished_ = true;
         std::size_t decoded = 0;
         for (const Sensor& sensor : sensors_) decoded += sensor.decoded;
+        for (const Sensor& sensor : sensors_)
+            if (sensor.unknown && sensor.others + sensor.foreign > 0)
+                throw std::runtime_error("'" + path_ + "': " + first_cause_);
         if (decoded == 0) throw std::runtime_error(nothingFound());
         for (const Sensor& sensor : sensors_)
         {

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "Repetition.h"
 #include "SweepStamps.h"
 #include "VelodyneSweeps.h"
 #include "taut/packets/velodyne/FrameAssembler.h"
@@ -75,6 +76,7 @@ class VelodyneDecoder : public PacketDecoder
 
     void add(const UdpDatagram& datagram, ImportedItems& items) override
     {
+        if (repetition_.is(datagram.payload)) return;
         velodyne::Packet packet;
         std::copy(datagram.payload.begin(), datagram.payload.end(), packet.begin());
         const auto info = velodyne::packetInfo(packet.data());
@@ -115,6 +117,7 @@ class VelodyneDecoder : public PacketDecoder
                   "clock it is %.3f s ahead of",
             toSeconds(clock_ahead_));
         lines.emplace_back(text);
+        repetition_.report(lines);
         return lines;
     }
 
@@ -156,6 +159,7 @@ class VelodyneDecoder : public PacketDecoder
     }
 
     bool keep_packets_;
+    Repetition repetition_;
     SweepStamps stamps_;
     VelodyneSweeps sweeps_;
     std::optional<velodyne::FrameAssembler> frames_;  // that become points

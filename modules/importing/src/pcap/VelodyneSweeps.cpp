@@ -9,6 +9,7 @@ namespace
 {
 constexpr int kWrap = 3000;                      // [0.01 deg] more than packets out of order show
 constexpr Duration kLongestSweep = 250'000'000;  // 5 Hz is the slowest turn
+constexpr Duration kLatest = 50'000'000;         // a packet that is no sign of another clock
 constexpr std::size_t kMostPackets = 2000;       // whatever the clock says
 
 void checkDecodes(const velodyne::Packet& packet, velodyne::Model model)
@@ -27,6 +28,12 @@ std::optional<VelodyneSweep> VelodyneSweeps::add(const velodyne::Packet& packet,
     const int azimuth = velodyne::blockAzimuth(packet.data(), 0);
     auto& packets = sweep_.scan.packets;
     std::optional<VelodyneSweep> complete;
+    const bool late = last_azimuth_ >= 0 && t < last_ && last_ - t < kLatest;
+    if (late && !packets.empty())  // captured in another order than sent
+    {
+        packets.push_back(packet);
+        return complete;
+    }
     if (!packets.empty() &&
         (azimuth < last_azimuth_ - kWrap || t - sweep_.scan.stamp > kLongestSweep ||
          packets.size() == kMostPackets))

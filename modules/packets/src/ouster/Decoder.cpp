@@ -1,5 +1,6 @@
 #include "taut/packets/ouster/Decoder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
@@ -42,6 +43,19 @@ std::size_t lidarPacketBytes(const SensorInfo& info)
                layout.columnBytes(info.pixels_per_column);
 }
 
+std::string misfit(const SensorInfo& info, const std::uint8_t* packet, std::size_t bytes)
+{
+    if (bytes != lidarPacketBytes(info))
+        return "a lidar packet has " + std::to_string(bytes) +
+               " bytes where the description says " + std::to_string(lidarPacketBytes(info)) +
+               ": it is of another sensor or setting";
+    if (info.profile == Profile::Legacy || info.serial == 0) return "";
+    const auto serial = serialOf(packet, layoutOf(info.profile));
+    if (serial == info.serial) return "";
+    return "a packet is of the sensor " + std::to_string(serial) + ", the description of " +
+           std::to_string(info.serial);
+}
+
 ImuSample decodeImu(const std::uint8_t* packet)
 {
     constexpr std::size_t kGyroTimeAt = 16, kAccelAt = 24, kGyroAt = 36;
@@ -66,22 +80,10 @@ FrameAssembler::FrameAssembler(const SensorInfo& info) : info_(info)
              std::sin(info.beam_altitudes[i])});
 }
 
-void FrameAssembler::check(const std::uint8_t* packet, std::size_t bytes) const
-{
-    if (bytes != lidarPacketBytes(info_))
-        throw DescriptionError(
-            "a lidar packet has " + std::to_string(bytes) + " bytes where the description says " +
-            std::to_string(lidarPacketBytes(info_)) + ": it is of another sensor or setting");
-    if (info_.profile == Profile::Legacy || info_.serial == 0) return;
-    if (const auto serial = serialOf(packet, layoutOf(info_.profile)); serial != info_.serial)
-        throw DescriptionError(
-            "a packet is of the sensor " + std::to_string(serial) + ", the description of " +
-            std::to_string(info_.serial));
-}
-
 std::optional<Frame> FrameAssembler::add(const std::uint8_t* packet, std::size_t bytes)
 {
-    check(packet, bytes);
+    if (const std::string cause = misfit(info_, packet, bytes); !cause.empty())
+        throw DescriptionError(cause);
     packet_time_.reset();
     const PacketLayout layout = layoutOf(info_.profile);
     const std::size_t column_bytes = layout.columnBytes(info_.pixels_per_column);
@@ -183,6 +185,12 @@ std::optional<Frame> FrameAssembler::finish()
         frame_ = {};
         return {};
     }
+    // Packets may be captured in another order than they were sent.
+    std::int32_t first = 0;
+    for (const LidarPoint& point : frame_.scan.points) first = std::min(first, point.offset);
+    if (first < 0)
+        for (LidarPoint& point : frame_.scan.points) point.offset -= first;
+    frame_.scan.stamp += first;
     frame_.scan.rings = info_.pixels_per_column;
     frame_.scan.T_imu_lidar = info_.T_imu_lidar();
     return std::exchange(frame_, {});

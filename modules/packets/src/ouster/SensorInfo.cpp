@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace taut::ouster
 {
@@ -126,11 +127,21 @@ std::vector<double> readAngles(const Description& description, const std::string
     return angles;
 }
 
+/** [mm] What the maker's own programs take where old firmware does not tell it. */
+double usualBeamOrigin(const std::string& model)
+{
+    for (const auto& [line, origin] :
+         {std::pair("OS-0-", 27.67), std::pair("OS-1-", 15.806), std::pair("OS-2-", 13.762)})
+        if (model.compare(0, 5, line) == 0) return origin;
+    return 12.163;  // of the first generation, which was an OS1
+}
+
 Vector3d readBeamOrigin(const Description& description)
 {
     const auto origin = readTransform(description, "beam_to_lidar_transform", {}).p;
     if (!origin.isZero()) return origin;
-    return {description.get("lidar_origin_to_beam_origin_mm", 0.0) * kMillimetre, 0, 0};
+    const double usual = usualBeamOrigin(description.get<std::string>("prod_line", ""));
+    return {description.get("lidar_origin_to_beam_origin_mm", usual) * kMillimetre, 0, 0};
 }
 
 /** A number, or a number as text. */

@@ -8,6 +8,11 @@
 
 namespace taut::velodyne
 {
+namespace
+{
+constexpr Duration kLatest = 50'000'000;  // a packet that is no sign of a clock set back
+}
+
 FrameAssembler::FrameAssembler(Model model, Calibration calibration)
     : model_(model), calibration_(std::move(calibration)), turns_(firingPattern(model).lasers)
 {
@@ -21,8 +26,11 @@ void FrameAssembler::add(const std::uint8_t* packet, std::vector<Scan>& complete
     const Duration t = clock.sinceFirst(packetInfo(packet).microseconds);
     const int azimuth = blockAzimuth(packet, 0);
     returns_.clear();
-    const PacketInfo info = decodePacket(packet, calibration_, returns_, turningRate(azimuth, t));
+    const bool late = last_azimuth_ >= 0 && t < last_;  // the head turns as before
+    const double rate = late ? rate_ : turningRate(azimuth, t);
+    const PacketInfo info = decodePacket(packet, calibration_, returns_, rate);
     clock_ = clock;
+    rate_ = rate;
     packet_end_ = t;
     auto next = returns_.begin();
     for (int block = 0; block < usedBlocks(info); block++)
@@ -34,8 +42,11 @@ void FrameAssembler::add(const std::uint8_t* packet, std::vector<Scan>& complete
         for (; next != returns_.end() && next->block == block; ++next)
             turns_.add(next->position, next->intensity, next->laser, t + next->offset);
     }
-    last_azimuth_ = azimuth;
-    last_ = t;
+    if (!late || last_ - t > kLatest)
+    {
+        last_azimuth_ = azimuth;
+        last_ = t;
+    }
     packet_end_ += std::llround(firingPattern(model_).blockPeriod());
 }
 

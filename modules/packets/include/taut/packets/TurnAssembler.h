@@ -22,7 +22,8 @@ class TurnAssembler
 
     /** The next block of returns: the azimuth of the head [0.01 deg, 0 to 35999] and a time near
      * its own, in the order of firing. Appends the turns that this shows to be complete: at the
-     * latest after a quarter of a second. Stamps are the times of their first points. */
+     * latest after a quarter of a second. Stamps are the times of their first points. A block that
+     * comes some milliseconds after a later one joins the turn that is under way. */
     void beginBlock(int azimuth, Time t, std::vector<Scan>& complete);
 
     /** A return of that block. */
@@ -46,6 +47,7 @@ class TurnAssembler
     int rings_;
     Cut cut_ = Cut::Unknown;
     int last_azimuth_ = -1;
+    Time last_ = 0;        // of the blocks, the latest
     bool forward_ = true;  // clockwise
     int travelled_ = 0;    // [0.01 deg], since the first block or the last gap
     Time base_ = 0;        // of the points' offsets

@@ -36,6 +36,13 @@ class PacketDecoder
     /** True if the datagram looks like one of this make. */
     virtual bool recognises(const UdpDatagram& datagram) const = 0;
 
+    /** False for a datagram that it recognises by its port, but that has not the size of a packet.
+     */
+    virtual bool isOfItsKind(const UdpDatagram&) const { return true; }
+
+    /** Why a datagram that it recognises is not of its sensor; empty if it may be. */
+    virtual std::string misfit(const UdpDatagram&) const { return {}; }
+
     /** Throws std::runtime_error if the datagram cannot be used; ouster::DescriptionError and
      * hesai::CorrectionError if none can be. */
     virtual void add(const UdpDatagram& datagram, ImportedItems& items) = 0;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "taut/core/Imu.h"
@@ -30,6 +31,10 @@ struct DescriptionError : std::runtime_error
 
 /** Size of a lidar packet of that sensor. */
 std::size_t lidarPacketBytes(const SensorInfo& info);
+
+/** Why these bytes are no lidar packet of that sensor, by its size and serial number; empty if they
+ * may be one. */
+std::string misfit(const SensorInfo& info, const std::uint8_t* packet, std::size_t bytes);
 
 /** An IMU packet of kImuPacketBytes in SI units; its time is that of the gyroscope's reading.
  * Throws std::runtime_error if that is none. */
@@ -66,7 +71,6 @@ class FrameAssembler
     std::size_t lateColumns() const { return late_; }
 
  private:
-    void check(const std::uint8_t* packet, std::size_t bytes) const;
     void addColumn(const std::uint8_t* column);
     void checkPace(int measurement, Time t);
     void addPoints(const std::uint8_t* column, int measurement, Time t);

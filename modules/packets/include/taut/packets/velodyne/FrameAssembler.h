@@ -34,6 +34,7 @@ class FrameAssembler
     TurnAssembler turns_;
     std::vector<Return> returns_;  // of a packet
     int last_azimuth_ = -1;
+    double rate_ = 0;  // as turningRate() had it last
     Duration last_ = 0, packet_end_ = 0;
 };
 }  // namespace taut::velodyne
