@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "CommandLine.h"
+#include "taut/core/WarningLog.h"
 #include "taut/slam/LoopScores.h"
 #include "taut/trajectory/Interpolation.h"
 #include "taut/trajectory/Plots.h"
@@ -172,7 +173,9 @@ void printLoops(const taut::LoopScores& s)
 
 void run(const Options& options)
 {
-    const auto warn = [](const taut::Warning& w) { std::cerr << "warning: " << w.text << "\n"; };
+    taut::WarningLog warnings([](const taut::Warning& w)
+                              { std::cerr << "warning: " << w.text << "\n"; });
+    const auto warn = warnings.sink();
     const auto read = [&](const std::string& path)
     {
         if (!options.kitti_times.empty()) return taut::readKitti(path, options.kitti_times);
@@ -195,7 +198,8 @@ void run(const Options& options)
             score.alignment);
         score.alignment = taut::Alignment::Given;
     }
-    const taut::Scores scores = scoreTrajectory(truth, estimate, score, warn);
+    const taut::Scores scores = scoreTrajectory(truth, estimate, score);
+    std::cerr << warnings.summaryOfRest();
     std::optional<taut::PointScores> points;
     if (!options.points.empty())
         points = taut::scorePoints(

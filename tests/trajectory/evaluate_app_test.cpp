@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -48,6 +49,23 @@ TEST_F(EvaluateApp, PrintsATable)
     EXPECT_THAT(r.output, HasSubstr("coverage   100.0 % of 20.000 s"));
     EXPECT_THAT(r.output, HasSubstr("ATE position"));
     EXPECT_THAT(r.output, HasSubstr("KITTI 100..800 m         none"));
+}
+
+TEST_F(EvaluateApp, WarnsOfThreeRepeatedPosesAndCountsTheOthers)
+{
+    Trajectory truth = readTum(truth_);
+    std::string text = "\xEF\xBB\xBF";  // a byte order mark, too
+    for (const StampedPose& pose : truth) text += tumLine(pose) + "\n" + tumLine(pose) + "\n";
+    std::ofstream(truth_) << text;
+    const test::ProgramRun r = run(files());
+    EXPECT_EQ(r.exit_code, 0);
+    EXPECT_THAT(r.output, HasSubstr("ATE position"));
+    std::size_t lines = 0;
+    for (auto at = r.output.find("a second pose"); at != std::string::npos;
+         at = r.output.find("a second pose", at + 1))
+        lines++;
+    EXPECT_EQ(lines, 3U);
+    EXPECT_THAT(r.output, HasSubstr("repeated_stamp"));  // how many more
 }
 
 TEST_F(EvaluateApp, WritesJson)

@@ -184,16 +184,27 @@ TEST(Scores, InterpolateADenseTruthToASparseEstimate)
     EXPECT_GT(scores.absolute.position.max, 1e-7);
 }
 
-TEST(Scores, WarnOfATruthThatIsSparserThanTheEstimate)
+TEST(Scores, InterpolateTheDenserOfBoth)
 {
-    std::vector<std::string> kinds;
-    const auto warn = [&](const Warning& w) { kinds.push_back(w.kind); };
     const Trajectory sparse = test::lissajous(20, 1), dense = test::lissajous(20, 10);
-    scoreTrajectory(dense, sparse, {}, warn);
-    scoreTrajectory(dense, dense, {}, warn);
-    EXPECT_TRUE(kinds.empty());
-    scoreTrajectory(sparse, dense, {}, warn);
-    EXPECT_EQ(kinds, std::vector<std::string>{"sparse_truth"});
+    EXPECT_FALSE(scoreTrajectory(dense, sparse).at_truth_poses);
+    EXPECT_FALSE(scoreTrajectory(dense, dense).at_truth_poses);
+    const Scores exact = scoreTrajectory(sparse, dense);
+    EXPECT_TRUE(exact.at_truth_poses);
+    EXPECT_EQ(exact.pairs.size(), sparse.size());
+    EXPECT_LT(exact.absolute.position.max, 1e-9);
+
+    Trajectory between = dense;  // stamps of the truth lie between those of the estimate
+    for (StampedPose& pose : between) pose.t += 30'000'000;
+    ScoreOptions options;
+    options.alignment = Alignment::None;
+    const Scores moved = scoreTrajectory(sparse, between, options);
+    EXPECT_EQ(moved.pairs.size(), sparse.size() - 1);
+    EXPECT_LT(moved.absolute.position.max, 0.1);  // 30 ms at 2.5 m/s, not half of a second
+
+    Trajectory gap = dense;  // of a second: neither side says anything there
+    gap.erase(gap.begin() + 95, gap.begin() + 105);
+    EXPECT_EQ(scoreTrajectory(sparse, gap).pairs.size(), sparse.size() - 1);
 }
 
 TEST(Scores, OfARealTruthAgainstASubsampledCopyAreZero)

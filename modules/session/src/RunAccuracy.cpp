@@ -55,7 +55,9 @@ ReportTable coverageTable(const Scores& s)
         "What was compared",
         "",
         {},
-        {{"poses", format("%zu, %zu with truth", s.estimate_poses, s.pairs.size())},
+        {{"poses", format(
+                       s.at_truth_poses ? "%zu, scored at %zu of the truth" : "%zu, %zu with truth",
+                       s.estimate_poses, s.pairs.size())},
          {"truth covered",
           format("%.1f %% of %.3f s", 100 * s.coverage.share, s.coverage.truth_span)},
          {"path", format("%.3f m true, %.3f m estimated", s.truth_path, s.estimate_path)}}};
@@ -102,13 +104,12 @@ std::vector<Vector3d> pathOf(
 }
 }  // namespace
 
-ReportAccuracy accuracyOf(
-    const Trajectory& truth, const Trajectory& estimate, const WarningSink& warn)
+ReportAccuracy accuracyOf(const Trajectory& truth, const Trajectory& estimate)
 {
     ReportAccuracy accuracy;
     try
     {
-        const Scores scores = scoreTrajectory(truth, estimate, {}, warn);
+        const Scores scores = scoreTrajectory(truth, estimate);
         accuracy.headline = format(
             "Position %s, attitude %.3g deg (RMSE against the truth, after alignment).",
             length(scores.absolute.position.rmse).c_str(), scores.absolute.rotation_deg.rmse);

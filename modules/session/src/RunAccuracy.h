@@ -8,6 +8,5 @@ namespace taut
 {
 /** The errors of a run, aligned as taut-evaluate does it by default. Where they cannot be told, the
  * headline says why. */
-ReportAccuracy accuracyOf(
-    const Trajectory& truth, const Trajectory& estimate, const WarningSink& warn);
+ReportAccuracy accuracyOf(const Trajectory& truth, const Trajectory& estimate);
 }  // namespace taut

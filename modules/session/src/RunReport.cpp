@@ -154,8 +154,7 @@ class Reader
         use("loops.csv", [this] { readLoops(); });
         for (const char* name : {"config.yaml", "rig.yaml"})
             use(name, [&] { report_.texts.emplace_back(name, textOf(folder_ / name)); });
-        if (!truth_.empty())
-            report_.accuracy = accuracyOf(truth_, path_, [this](const Warning& w) { note(w); });
+        if (!truth_.empty()) report_.accuracy = accuracyOf(truth_, path_);
         setHeadlines();
         return std::move(report_);
     }

@@ -88,11 +88,26 @@ Alignment alignmentOf(const std::string& name)
     throw std::invalid_argument("'" + name + "' is not an alignment (se3, yaw, none)");
 }
 
-PosePairs pairPoses(const Trajectory& truth, const Trajectory& estimate, Duration max_truth_gap)
+bool isSparser(const Trajectory& truth, const Trajectory& estimate)
+{
+    return medianSpacing(truth) > medianSpacing(estimate) * 11 / 10;
+}
+
+PosePairs pairPoses(
+    const Trajectory& truth, const Trajectory& estimate, Duration max_truth_gap,
+    Duration max_estimate_gap)
 {
     requireIncreasing(estimate);
     const TrajectoryInterpolator truth_at(truth, max_truth_gap);
     PosePairs pairs;
+    if (isSparser(truth, estimate))
+    {
+        const TrajectoryInterpolator estimate_at(estimate, max_estimate_gap);
+        for (const StampedPose& pose : truth)
+            if (const auto T = estimate_at.at(pose.t))
+                pairs.push_back({pose.t, pose.T_world_imu, *T});
+        return pairs;
+    }
     for (const StampedPose& pose : estimate)
         if (const auto T = truth_at.at(pose.t)) pairs.push_back({pose.t, *T, pose.T_world_imu});
     return pairs;

@@ -122,7 +122,13 @@ std::string pointRows(const PointScores& p)
 std::string scoresAsText(const Scores& s, const std::optional<PointScores>& points)
 {
     std::string out =
-        format("poses      %zu estimated, %zu with truth\n", s.estimate_poses, s.pairs.size());
+        (s.at_truth_poses
+             ? format(
+                   "poses      %zu estimated; scored at %zu of the truth, which has fewer a "
+                   "second\n",
+                   s.estimate_poses, s.pairs.size())
+             : format(
+                   "poses      %zu estimated, %zu with truth\n", s.estimate_poses, s.pairs.size()));
     out += format(
         "coverage   %.1f %% of %.3f s; starts %.3f s late, ends %.3f s early, largest gap %.3f s\n",
         100 * s.coverage.share, s.coverage.truth_span, s.coverage.late_start, s.coverage.early_end,
@@ -147,6 +153,7 @@ std::string scoresAsJson(const Scores& s, const std::optional<PointScores>& poin
     out["truth_poses"] = s.truth_poses;
     out["estimate_poses"] = s.estimate_poses;
     out["paired_poses"] = s.pairs.size();
+    out["scored_at"] = s.at_truth_poses ? "truth" : "estimate";
     out["coverage"] = toJson(s.coverage);
     out["truth_path_m"] = s.truth_path;
     out["estimate_path_m"] = s.estimate_path;

@@ -14,9 +14,10 @@ void refuseTooLittle(const Scores& scores, const ScoreOptions& options)
     {
         std::snprintf(
             text, sizeof text,
-            "refused: only %zu of the estimate's %zu poses have a truth at their time, %zu are "
-            "needed",
-            scores.pairs.size(), scores.estimate_poses, options.min_poses);
+            "refused: only %zu of the %s's %zu poses have %s at their time, %zu are needed",
+            scores.pairs.size(), scores.at_truth_poses ? "truth" : "estimate",
+            scores.at_truth_poses ? scores.truth_poses : scores.estimate_poses,
+            scores.at_truth_poses ? "an estimate" : "a truth", options.min_poses);
         throw ScoreRefused(text);
     }
     if (scores.coverage.share < options.min_coverage)
@@ -71,21 +72,16 @@ Coverage coverageOf(const Trajectory& truth, const Trajectory& estimate, Duratio
 }
 
 Scores scoreTrajectory(
-    const Trajectory& truth, const Trajectory& estimate, const ScoreOptions& options,
-    const WarningSink& warn)
+    const Trajectory& truth, const Trajectory& estimate, const ScoreOptions& options)
 {
     Scores scores;
-    scores.pairs = pairPoses(truth, estimate, options.max_truth_gap);
+    scores.pairs = pairPoses(truth, estimate, options.max_truth_gap, options.max_estimate_gap);
+    scores.at_truth_poses = isSparser(truth, estimate);
     const PosePairs& pairs = scores.pairs;
     scores.truth_poses = truth.size();
     scores.estimate_poses = estimate.size();
     scores.coverage = coverageOf(truth, estimate, options.max_estimate_gap);
     refuseTooLittle(scores, options);
-    if (warn && medianSpacing(truth) > medianSpacing(estimate) * 11 / 10)
-        warn(
-            {0, "sparse_truth",
-             "the truth has fewer poses a second than the estimate: the scores hold errors of its "
-             "interpolation"});
     for (std::size_t i = 1; i < pairs.size(); i++)
     {
         scores.truth_path += (pairs[i].truth.p - pairs[i - 1].truth.p).norm();

@@ -6,6 +6,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include "taut/core/ByteOrderMark.h"
 #include "taut/core/writeError.h"
 
 namespace taut
@@ -59,6 +60,7 @@ void forLines(
     std::string line;
     for (std::size_t number = 1; std::getline(file, line); number++)
     {
+        if (number == 1) dropByteOrderMark(line);
         const auto words = wordsOf(line, more);
         if (words.empty() || words.front().front() == '#') continue;
         try

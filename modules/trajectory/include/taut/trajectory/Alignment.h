@@ -22,7 +22,7 @@ std::string nameOf(Alignment alignment);
 /** The opposite, but for "given". Throws std::invalid_argument for any other name. */
 Alignment alignmentOf(const std::string& name);
 
-/** Truth and estimate at one stamp of the estimate. */
+/** Truth and estimate at one stamp. */
 struct PosePair
 {
     Time t = 0;
@@ -32,10 +32,15 @@ struct PosePair
 
 using PosePairs = std::vector<PosePair>;
 
-/** The truth interpolated to the stamps of the estimate. Stamps outside the truth, or in a gap of
- * it (see TrajectoryInterpolator), give no pair. */
+/** Whether the truth has clearly fewer poses a second than the estimate. */
+bool isSparser(const Trajectory& truth, const Trajectory& estimate);
+
+/** The denser of both interpolated to the stamps of the other: between sparse poses nobody knows
+ * what happened. Stamps outside of the denser, or in a gap of it (see TrajectoryInterpolator), give
+ * no pair. */
 PosePairs pairPoses(
-    const Trajectory& truth, const Trajectory& estimate, Duration max_truth_gap = 0);
+    const Trajectory& truth, const Trajectory& estimate, Duration max_truth_gap = 0,
+    Duration max_estimate_gap = 0);
 
 /** T_truth_estimate that minimises sum |p_truth - T p_estimate|^2 over the dof of the alignment
  * (Umeyama, PAMI 1991). Throws std::runtime_error if the positions do not determine it: less than 1

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "taut/core/Warning.h"
 #include "taut/trajectory/Alignment.h"
 #include "taut/trajectory/RelativeErrors.h"
 #include "taut/trajectory/Statistics.h"
@@ -67,6 +66,7 @@ struct Scores
 {
     PosePairs pairs;  //!< what was scored
     std::size_t truth_poses = 0, estimate_poses = 0;
+    bool at_truth_poses = false;  //!< it has fewer a second: the estimate is interpolated
     Coverage coverage;
     double truth_path = 0;     //!< length along the paired poses [m]
     double estimate_path = 0;  //!< [m]
@@ -78,9 +78,7 @@ struct Scores
 };
 
 /** Every score of an estimate. Throws ScoreRefused where it covers too little, std::runtime_error
- * where the alignment is not determined. Warns (kind "sparse_truth") if the truth is the sparser of
- * the two: the scores then hold errors of its interpolation. */
+ * where the alignment is not determined. */
 Scores scoreTrajectory(
-    const Trajectory& truth, const Trajectory& estimate, const ScoreOptions& options = {},
-    const WarningSink& warn = {});
+    const Trajectory& truth, const Trajectory& estimate, const ScoreOptions& options = {});
 }  // namespace taut
