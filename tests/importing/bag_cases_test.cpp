@@ -128,7 +128,18 @@ TEST_F(AReportedBag, WithoutStampsUsesTimesSince1970)
     const Imported result = importStyle(style);
     expectSame(result.scans, scans_, 300);
     EXPECT_EQ(result.warnings.count("no_stamp"), 0u);
-    EXPECT_THAT(result.findings, HasSubstr("most are zero"));
+    EXPECT_THAT(result.findings, HasSubstr("most have none"));
+}
+
+TEST_F(AReportedBag, WithIntensitiesUpToOneScalesThem)
+{
+    CloudStyle style;
+    style.intensity_scale = 1 / 255.0;
+    const Imported result = importStyle(style);
+    ASSERT_EQ(result.scans.size(), scans_.size());
+    EXPECT_THAT(result.findings, HasSubstr("intensity: from 0 to 1, times 255"));
+    for (std::size_t i = 0; i < scans_[3].points.size(); i++)
+        ASSERT_NEAR(result.scans[3].points[i].intensity, scans_[3].points[i].intensity, 1e-3);
 }
 
 class ATimeField : public AReportedBag, public testing::WithParamInterface<const char*>

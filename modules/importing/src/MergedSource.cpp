@@ -46,6 +46,8 @@ bool MergedSource::sampleIsDue() const
 std::vector<std::string> MergedSource::findings() const
 {
     auto lines = streams_.findings;
+    if (streams_.later_findings)
+        for (std::string& line : streams_.later_findings()) lines.push_back(std::move(line));
     if (undistorted_ > 0)
         lines.push_back(
             std::to_string(undistorted_) + " of " + std::to_string(scans_) +

@@ -18,6 +18,7 @@ struct SensorStreams
     std::function<double()> progress;
     std::vector<std::string> findings;
     bool undistorted = false;  //!< somebody undistorted the scans, as is known
+    std::function<std::vector<std::string>()> later_findings;  //!< complete at the end; or empty
 };
 
 /** Brings the streams of two sensors into the order of time: a scan when it has ended, as a

@@ -4,6 +4,7 @@
 #include <deque>
 #include <stdexcept>
 
+#include "../intensityScale.h"
 #include "BagFolder.h"
 #include "BagKind.h"
 #include "BagReader.h"
@@ -113,6 +114,7 @@ class BagSource : public ImportSource
         std::vector<std::string> all = judged_;
         all.insert(all.end(), bag_.findings().begin(), bag_.findings().end());
         for (std::string& line : clock_.findings()) all.push_back(std::move(line));
+        if (intensity_scale_ != 1) all.emplace_back(kIntensityScaled);
         return all;
     }
 
@@ -140,6 +142,10 @@ class BagSource : public ImportSource
             const auto other = [this](const RawSweep* sweep) { return !sensor_.isOf(*sweep); };
             sweeps.erase(std::remove_if(sweeps.begin(), sweeps.end(), other), sweeps.end());
             clock_.learn(sweeps);
+            IntensityRange range;
+            for (const RawSweep* sweep : sweeps)
+                for (const LidarPoint& point : sweep->points) range.add(point.intensity);
+            intensity_scale_ = static_cast<float>(range.scale());
         }
         catch (const std::runtime_error& e)
         {
@@ -201,6 +207,8 @@ class BagSource : public ImportSource
         }
         try
         {
+            if (intensity_scale_ != 1)
+                for (LidarPoint& point : sweep.points) point.intensity *= intensity_scale_;
             Scan scan = clock_.toScan(std::move(sweep));
             scans_++;
             return scan;
@@ -251,6 +259,7 @@ class BagSource : public ImportSource
     SweepClock clock_;
     std::vector<std::string> judged_;
     std::deque<Pending> ahead_;
+    float intensity_scale_ = 1;
     bool learned_ = false, ended_ = false;
     std::size_t sweeps_read_ = 0, scans_ = 0, readings_ = 0;
 };

@@ -102,7 +102,8 @@ std::optional<BagMessage> SortedBag::next()
     {
         // One more than is given: its time may be wrong.
         while (!feed.ended && feed.ahead.size() < 2) readOne(feed);
-        if (!feed.ahead.empty() && (first == nullptr || dueAt(feed) <= dueAt(*first))) first = &feed;
+        if (!feed.ahead.empty() && (first == nullptr || dueAt(feed) <= dueAt(*first)))
+            first = &feed;
     }
     if (first == nullptr) return {};
     const Duration step = stepTo(*first);

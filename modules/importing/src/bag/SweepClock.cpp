@@ -12,8 +12,7 @@ namespace
 {
 constexpr Duration kLongestSweep = 2'000'000'000;
 constexpr Duration kLargestOverlap = 20'000'000;  // of sweeps, by jitter
-constexpr Time kYear2000 = 946'684'800'000'000'000;
-constexpr double kMostOutside = 0.05;  // of the points of a sweep: more are no mistake
+constexpr double kMostOutside = 0.05;             // of the points of a sweep: more are no mistake
 constexpr double kFinestFloat = 1e6;   // [ns] steps of a float that are told from a lack of digits
 constexpr double kCoarsestStep = 3e6;  // [ns] any other
 constexpr std::size_t kManyPoints = 1000;  // that tell steps
@@ -173,25 +172,28 @@ void SweepClock::learnLongest(const std::vector<const RawSweep*>& sweeps)
 void SweepClock::learnBase(const std::vector<const RawSweep*>& sweeps)
 {
     std::vector<double> middles;
-    bool has_base = false;
+    double last = 0;
+    bool has_base = false, runs = sweeps.size() > 1;  // on, from sweep to sweep
+    std::size_t headers = 0;
     for (const RawSweep* sweep : sweeps)
     {
+        headers += sweep->header != 0 ? 1 : 0;
+        if (sweep != sweeps.front()) runs &= median(sweep->times) > last;
+        last = median(sweep->times);
         middles.push_back(std::abs(median(sweep->times)));
         has_base |= sweep->base != 0;
     }
-    since_header_ =
-        !has_base && median(std::move(middles)) * unit_ < static_cast<double>(kLongestSweep);
+    since_header_ = !has_base && !(runs && headers == 0) &&
+                    median(std::move(middles)) * unit_ < static_cast<double>(kLongestSweep);
 }
 
 void SweepClock::learnAnchor(const std::vector<const RawSweep*>& sweeps)
 {
     std::vector<double> places;
     std::vector<Duration> spans;
-    std::vector<Time> firsts;
     for (const RawSweep* sweep : sweeps)
     {
         const Extent extent = extentOf(*sweep);
-        firsts.push_back(extent.first);
         spans.push_back(extent.last - extent.first);
         if (sweep->header == 0) continue;
         places.push_back(
@@ -199,12 +201,10 @@ void SweepClock::learnAnchor(const std::vector<const RawSweep*>& sweeps)
             static_cast<double>(std::max<Duration>(spans.back(), 1)));
     }
     const Duration span = median(std::move(spans));
-    if (2 * places.size() < sweeps.size() && !since_header_ &&
-        median(std::move(firsts)) > kYear2000)
+    if (2 * places.size() < sweeps.size() && !since_header_)
     {
         findings_.emplace_back(
-            "stamp of a sweep: most are zero, and the times of the points, which count from 1970, "
-            "are used instead");
+            "stamp of a sweep: most have none, and the times of the points are used instead");
         return;
     }
     const double place = places.empty() ? 0 : median(std::move(places));

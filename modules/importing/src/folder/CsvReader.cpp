@@ -4,6 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "taut/core/ByteOrderMark.h"
+
 namespace taut
 {
 namespace
@@ -28,6 +30,7 @@ CsvReader::CsvReader(const std::string& path) : path_(path), file_(path)
 {
     if (!file_) throw std::runtime_error("cannot read '" + path + "'");
     if (std::getline(file_, line_)) number_ = 1;
+    dropByteOrderMark(line_);
     if (!line_.empty() && line_[0] == '#') line_[0] = ' ';
     split(columns_);
     if (columns_.empty())

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 #include "../MergedSource.h"
 #include "../filesIn.h"
@@ -25,10 +26,11 @@ std::vector<fs::path> cloudsOf(const fs::path& folder)
     const auto other = [](const fs::path& file)
     { return !isCloud(file) || file.filename() == kImuFile; };
     files.erase(std::remove_if(files.begin(), files.end(), other), files.end());
-    if (std::all_of(files.begin(), files.end(), [](const auto& f) { return !!stampOfName(f); }))
+    const NameStamps stamps(files);
+    if (std::all_of(files.begin(), files.end(), [&](const auto& f) { return !!stamps.of(f); }))
         std::stable_sort(
             files.begin(), files.end(),
-            [](const auto& a, const auto& b) { return stampOfName(a) < stampOfName(b); });
+            [&](const auto& a, const auto& b) { return stamps.of(a) < stamps.of(b); });
     return files;
 }
 
@@ -102,6 +104,40 @@ class ImuTable
     std::array<int, 6> values_{};
     std::vector<std::string> row_;
 };
+/** First and last time of the IMU; nothing without one. */
+std::optional<std::pair<Time, Time>> spanOfImu(const fs::path& file)
+{
+    if (!fs::exists(file)) return {};
+    ImuTable table(file.string(), {});
+    std::optional<std::pair<Time, Time>> span;
+    while (const auto sample = table.next())
+    {
+        if (!span) span = {sample->t, sample->t};
+        span->first = std::min(span->first, sample->t);
+        span->second = std::max(span->second, sample->t);
+    }
+    return span;
+}
+
+/** The clouds and what the first of them tell. */
+struct CloudFolder
+{
+    CloudFolder(const fs::path& folder, const ImportOptions& options, const WarningSink& warn)
+        : files(cloudsOf(folder)), queue(files), reader(files, stampsOf(folder), options, warn)
+    {
+    }
+
+    /** A pass through the IMU alone where its times can tell the unit of the names. */
+    NameStamps stampsOf(const fs::path& folder) const
+    {
+        const NameStamps names(files);
+        return names.finding().empty() ? names : NameStamps(files, spanOfImu(folder / kImuFile));
+    }
+
+    std::vector<fs::path> files;
+    FileQueue queue;
+    CloudReader reader;
+};
 }  // namespace
 
 bool isPlainFolder(const Recording& recording)
@@ -110,14 +146,26 @@ bool isPlainFolder(const Recording& recording)
 }
 
 std::unique_ptr<ImportSource> openPlainFolder(
-    const Recording& recording, const ImportOptions&, const WarningSink& warn)
+    const Recording& recording, const ImportOptions& options, const WarningSink& warn)
 {
     SensorStreams streams;
-    auto clouds = std::make_shared<FileQueue>(cloudsOf(recording.path));
-    streams.findings = {std::to_string(clouds->size()) + " clouds"};
-    streams.progress = [clouds] { return clouds->progress(); };
+    std::shared_ptr<CloudFolder> clouds;
+    try
+    {
+        clouds = std::make_shared<CloudFolder>(recording.path, options, warn);
+    }
+    catch (const std::runtime_error& e)
+    {
+        throw std::runtime_error("'" + recording.path.string() + "': " + e.what());
+    }
+    streams.findings = {std::to_string(clouds->queue.size()) + " clouds"};
+    streams.later_findings = [clouds] { return clouds->reader.findings(); };
+    streams.progress = [clouds] { return clouds->queue.progress(); };
     streams.next_scan = [clouds, warn]
-    { return clouds->nextScan([](const fs::path& file) { return readCloud(file); }, warn); };
+    {
+        return clouds->queue.nextScan(
+            [&](const fs::path& file) { return clouds->reader.read(file); }, warn);
+    };
     const fs::path imu = recording.path / kImuFile;
     if (fs::exists(imu))
     {
