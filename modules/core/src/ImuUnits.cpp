@@ -76,17 +76,19 @@ void ImuUnitJudge::closeWindow()
     const std::size_t n = window_.size();
     if (n >= kFewest)
     {
-        const double to_si = accelUnit(meanForce()).factor;
+        steady_ += std::max(steadyForce(window_, 1), steadyForce(window_, kDegree));
+        seconds_++;
+        const Unit unit = accelUnit(meanForce());
+        const double to_si = unit.factor;
         const Vector3d before = meanAccel(window_, 0, n / 3) * to_si;
         const Vector3d after = meanAccel(window_, n - n / 3, n) * to_si;
         const bool gravity_alone =
+            (to_si == 1 || showsGravity(unit)) &&
             std::abs(before.norm() - kGravityWorld.norm()) < kRestTolerance &&
             std::abs(after.norm() - kGravityWorld.norm()) < kRestTolerance;
         const auto error = [&](double scale)
         { return turnError(window_, n / 6, n - 1 - n / 6, scale, before, after); };
         const double rad = error(1), deg = error(kDegree);
-        steady_ += std::max(steadyForce(window_, 1), steadyForce(window_, kDegree));
-        seconds_++;
         // At rest a bias turns as if it were a rate in rad/s that is too high.
         const double turned = std::atan2(before.cross(after).norm(), before.dot(after));
         if (gravity_alone && rad > std::max(turned > kTurn ? kTurn : kBiasTurn, kClear * deg))

@@ -1,7 +1,9 @@
 #include "taut/importing/openImportSource.h"
 
 #include <fstream>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "CheckedSource.h"
 #include "CompletedSource.h"
@@ -34,9 +36,15 @@ Recording look(const std::string& path)
 }  // namespace
 
 std::unique_ptr<ImportSource> openImportSource(
-    const std::string& path, const ImportOptions& options, const WarningSink& warn)
+    const std::string& path, const ImportOptions& options, const WarningSink& sink)
 {
     const Recording recording = look(path);
+    // That clocks differ may show in more than one way.
+    const WarningSink warn = [sink, told = std::make_shared<bool>(false)](const Warning& w)
+    {
+        const bool again = w.kind == "clock_offset" && std::exchange(*told, true);
+        if (sink && !again) sink(w);
+    };
     std::string known;
     for (const ImportFormat& format : importFormats())
     {

@@ -90,7 +90,7 @@ Alignment alignmentOf(const std::string& name)
 
 bool isSparser(const Trajectory& truth, const Trajectory& estimate)
 {
-    return medianSpacing(truth) > medianSpacing(estimate) * 11 / 10;
+    return estimate.size() > 1 && medianSpacing(truth) > medianSpacing(estimate) * 11 / 10;
 }
 
 PosePairs pairPoses(

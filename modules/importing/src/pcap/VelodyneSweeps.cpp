@@ -32,6 +32,7 @@ std::optional<VelodyneSweep> VelodyneSweeps::add(const velodyne::Packet& packet,
     if (late && !packets.empty())  // captured in another order than sent
     {
         packets.push_back(packet);
+        missing_ -= missing_ > 0 ? 1 : 0;
         return complete;
     }
     if (!packets.empty() &&
