@@ -146,11 +146,10 @@ Layer Offscreen::readBack(const ViewCamera& camera)
     for (int y = 0; y < height / 2; ++y)  // OpenGL begins at the bottom
     {
         const auto top = static_cast<std::ptrdiff_t>(layer.picture.index(0, y));
+        const auto end = top + width;  // a structured binding is captured from C++20 on
         const auto bottom = static_cast<std::ptrdiff_t>(layer.picture.index(0, height - 1 - y));
-        const auto swapRows = [&](auto& values) {
-            std::swap_ranges(
-                values.begin() + top, values.begin() + top + width, values.begin() + bottom);
-        };
+        const auto swapRows = [&](auto& values)
+        { std::swap_ranges(values.begin() + top, values.begin() + end, values.begin() + bottom); };
         swapRows(layer.picture.pixels);
         swapRows(layer.depth);
     }
