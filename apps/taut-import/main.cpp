@@ -2,7 +2,6 @@
  * Exit codes: 0 done, 1 failed, 2 bad usage, 3 done, but part of the input could not be used. */
 #include <cstdio>
 #include <filesystem>
-#include <regex>
 #include <type_traits>
 
 #include "../CommandLine.h"
@@ -11,6 +10,7 @@
 #include "../guardOutput.h"
 #include "Options.h"
 #include "SensorSummary.h"
+#include "taut/core/NameExpression.h"
 #include "taut/core/WarningLog.h"
 #include "taut/importing/openImportSource.h"
 #include "taut/rawlog/RawlogSource.h"
@@ -64,7 +64,7 @@ class Import
 
     bool matches(const std::string& expression, const std::string& label)
     {
-        if (expression.empty() || std::regex_match(label, std::regex(expression))) return true;
+        if (NameExpression("the sensor label", expression).matches(label)) return true;
         warnings_.add(
             {0, "rig_unused",
              "the rig file describes '" + expression + "', but the label written is '" + label +

@@ -6,19 +6,18 @@
 #include <deque>
 #include <exception>
 #include <map>
-#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "ErrorText.h"
 #include "ImuUnitCheck.h"
-#include "LabelExpression.h"
 #include "MrptConversion.h"
 #include "ObservationReader.h"
 #include "ObservationToScan.h"
 #include "SensorChoice.h"
 #include "taut/completion/SweepCompleter.h"
+#include "taut/core/NameExpression.h"
 #include "taut/core/format.h"
 #include "taut/rawlog/StampOrder.h"
 
@@ -246,7 +245,7 @@ void RawlogSource::Impl::choose(
     const bool is_first = !choice.chosen();
     if (!choice.accepts(label) || !is_first) return;
     chosen_label = label;
-    if (rig.label.empty() || std::regex_match(label, labelExpression(rig.label))) return;
+    if (NameExpression("the sensor label", rig.label).matches(label)) return;
     warn(
         0, "rig_unused",
         "the rig file describes '" + rig.label + "', not the sensor in use, '" + label + "'");

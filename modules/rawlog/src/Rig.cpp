@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "LabelExpression.h"
 #include "taut/core/Config.h"
+#include "taut/core/NameExpression.h"
 
 namespace taut
 {
@@ -37,14 +37,7 @@ Pose readPose(ConfigSection& section)
 void readLabel(ConfigSection& section, std::string& label)
 {
     section.key("label", label, "regular expression of the sensor's label; empty = any");
-    try
-    {
-        labelExpression(label);
-    }
-    catch (const std::runtime_error& e)
-    {
-        throw ConfigError(section.path() + ": " + e.what());
-    }
+    NameExpression(section.path() + ": the sensor label", label);
 }
 
 void readBeams(ConfigSection& section, BeamCorrections& beams)

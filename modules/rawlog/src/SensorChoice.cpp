@@ -2,20 +2,18 @@
 
 #include <stdexcept>
 
-#include "LabelExpression.h"
-
 namespace taut
 {
 SensorChoice::SensorChoice(std::string kind, std::string option, const std::string& expression)
     : kind_(std::move(kind)), option_(std::move(option))
 {
-    if (!expression.empty()) expression_ = labelExpression(expression);
+    if (!expression.empty()) expression_.emplace("the sensor label", expression);
 }
 
 bool SensorChoice::accepts(const std::string& label)
 {
     const auto [it, is_new] = matches_.try_emplace(label, true);
-    if (is_new) it->second = !expression_ || std::regex_match(label, *expression_);
+    if (is_new) it->second = !expression_ || expression_->matches(label);
     if (!it->second) return false;
     if (!chosen_) chosen_ = label;
     if (*chosen_ == label) return true;

@@ -2,8 +2,9 @@
 
 #include <map>
 #include <optional>
-#include <regex>
 #include <string>
+
+#include "taut/core/NameExpression.h"
 
 namespace taut
 {
@@ -26,7 +27,7 @@ class SensorChoice
 
  private:
     std::string kind_, option_;
-    std::optional<std::regex> expression_;
+    std::optional<NameExpression> expression_;
     std::optional<std::string> chosen_;
     std::map<std::string, bool> matches_;  // of every label seen
 };

@@ -1,28 +1,11 @@
 #include "TopicChoice.h"
 
 #include <algorithm>
-#include <regex>
 
-#include "taut/core/Config.h"
+#include "taut/core/NameExpression.h"
 
 namespace taut::bag
 {
-namespace
-{
-std::regex compile(const std::string& expression, const std::string& option)
-{
-    try
-    {
-        return std::regex(expression, std::regex::ECMAScript);
-    }
-    catch (const std::regex_error& e)
-    {
-        throw ConfigError(
-            option + " '" + expression + "' is not a regular expression: " + e.what());
-    }
-}
-}  // namespace
-
 std::vector<BagTopic> topicsOf(BagReader& reader)
 {
     std::vector<BagTopic> topics;
@@ -53,11 +36,11 @@ std::vector<BagTopic> matching(
     const std::vector<BagTopic>& topics, const std::vector<std::string>& types,
     const std::string& expression, const std::string& option)
 {
-    const std::regex regex = compile(expression, option);
+    const NameExpression name(option, expression);
     std::vector<BagTopic> found;
     for (const BagTopic& topic : topics)
         if (std::find(types.begin(), types.end(), topic.type) != types.end() &&
-            (expression.empty() || std::regex_match(topic.name, regex)))
+            name.matches(topic.name))
             found.push_back(topic);
     return found;
 }
