@@ -294,7 +294,7 @@ std::string refusal(const std::string& json)
     {
         parseSensorInfo(json);
     }
-    catch (const std::exception& e)
+    catch (const std::runtime_error& e)  // no other one: its callers know none
     {
         return e.what();
     }
@@ -318,6 +318,12 @@ TEST(AnOusterDescription, NamesWhatIsWrongInIt)
     EXPECT_THAT(with("beam_azimuth_angles", "no"), HasSubstr("not of the right type"));
     EXPECT_THAT(with("imu_to_sensor_transform", {1, 2}), HasSubstr("no 4 x 4 matrix"));
     EXPECT_THAT(with("imu_to_sensor_transform", std::vector<double>(16, 1)), HasSubstr("no rigid"));
+    // Casts of these overflowed, or gave another number.
+    EXPECT_THAT(with("data_format", {{"columns_per_packet", 1e300}}), HasSubstr("impossible"));
+    EXPECT_THAT(with("udp_port_lidar", 70000), HasSubstr("'udp_port_lidar' is impossible"));
+    auto turning = good;
+    turning["lidar_mode"] = "1024xnan";
+    EXPECT_EQ(parseSensorInfo(turning.dump()).frame_rate, 0);
 }
 
 TEST(AnOusterDescription, OfOldFirmwareTakesTheUsualBeamOrigin)

@@ -3,10 +3,12 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 namespace taut::ouster
@@ -15,12 +17,13 @@ namespace
 {
 using nlohmann::json;
 constexpr double kDegree = M_PI / 180, kMillimetre = 1e-3;
+constexpr double kMostTurns = 1000;  // [Hz] none turns faster
 
 /** The value of a key: at the top, as old firmware has it, or in one of the sections of new. */
 class Description
 {
  public:
-    explicit Description(const std::string& text) : root_(json::parse(text))
+    explicit Description(const std::string& text) : root_(parsed(text))
     {
         if (!root_.is_object()) throw std::runtime_error("it is no JSON object");
     }
@@ -55,9 +58,28 @@ class Description
     }
 
  private:
+    static json parsed(const std::string& text)
+    {
+        try
+        {
+            return json::parse(text);
+        }
+        catch (const json::exception& e)
+        {
+            throw std::runtime_error(e.what());
+        }
+    }
+
     template <class T>
     static T as(const json& value, const std::string& key)
     {
+        if constexpr (std::is_integral_v<T>)
+        {
+            const double number = value.is_number() ? value.get<double>() : 0;
+            if (!(number >= std::numeric_limits<T>::min() &&
+                  number <= std::numeric_limits<T>::max()))
+                throw std::runtime_error("its '" + key + "' is impossible");
+        }
         try
         {
             return value.get<T>();
@@ -76,7 +98,9 @@ void readMode(const Description& description, SensorInfo& info)
 {
     int columns = 0;
     const auto mode = description.get<std::string>("lidar_mode", "");
-    if (std::sscanf(mode.c_str(), "%dx%lf", &columns, &info.frame_rate) != 2) info.frame_rate = 0;
+    if (std::sscanf(mode.c_str(), "%dx%lf", &columns, &info.frame_rate) != 2 ||
+        !(info.frame_rate > 0 && info.frame_rate <= kMostTurns))
+        info.frame_rate = 0;
     info.columns_per_frame = description.get("columns_per_frame", columns);
     if (info.columns_per_frame < 1 || info.columns_per_frame > 8192)
         throw std::runtime_error("it tells neither 'columns_per_frame' nor a 'lidar_mode'");
