@@ -125,6 +125,38 @@ TestMessages clouds(const std::vector<Scan>& scans, TestWire wire)
     return sweepMessages(scans, {}, wire);
 }
 
+TEST(ARos1Bag, WhoseCloudsHaveRowsWithoutPointsIsReadAtOnce)
+{
+    const TemporaryFolder folder;
+    const auto scans = syntheticSweeps(3);
+    TestMessages messages = clouds(scans, TestWire::Ros1);
+    WireWriter out(TestWire::Ros1);
+    out.header(scans.back().end);
+    out.number(std::uint32_t{0xffffffff});  // rows: each was gone through
+    out.number(std::uint32_t{0});           // width
+    out.number(std::uint32_t{3});
+    for (const std::string name : {"x", "y", "z"})
+    {
+        out.text(name);
+        out.number(static_cast<std::uint32_t>(4 * (name.front() - 'x')));
+        out.number(datatypeOf("float32"));
+        out.number(std::uint32_t{1});
+    }
+    out.number(std::uint8_t{0});
+    out.number(std::uint32_t{12});
+    out.number(std::uint32_t{0});
+    out.bytes({});
+    out.number(std::uint8_t{1});
+    // Together they took longer than a test may.
+    for (int i = 0; i < 500; i++)
+        messages.push_back(
+            {kLidarTopic, "sensor_msgs/PointCloud2", arrivalOf(scans.back()), out.message()});
+    writeFile(folder / "a.bag", Ros1Writer::bag(messages));
+    const Imported result = import(folder / "a.bag");
+    EXPECT_EQ(result.scans.size(), 3U);
+    EXPECT_EQ(result.warnings.count("scan_empty"), 500U);
+}
+
 TEST(ARos1Bag, ThatWasNotClosedIsReadAndSaysHowToRepairIt)
 {
     const TemporaryFolder folder;
@@ -209,6 +241,49 @@ TEST(AnMcapFile, OfAnUnknownCompressionFailsWithItsName)
     EXPECT_THROW(open(), std::runtime_error);
     ASSERT_GE(log.count("bag_damaged"), 1u);
     EXPECT_THAT(log.kept().front().text, testing::HasSubstr("'lzma' is unknown"));
+}
+
+TEST(ASqlite3Bag, WhoseIdentifiersAreAnyIntegersTellsItsProgress)
+{
+    const TemporaryFolder folder;
+    writeSqlite3Bag(folder / "a.db3", clouds(syntheticSweeps(3), TestWire::Cdr));
+    sqlite3* db = nullptr;
+    sqlite3_open(std::string(folder / "a.db3").c_str(), &db);
+    // The difference of the first and the last overflowed.
+    ASSERT_EQ(
+        sqlite3_exec(
+            db,
+            "UPDATE messages SET id = CASE id WHEN 1 THEN -9000000000000000000 WHEN 2 THEN 0 "
+            "ELSE 9000000000000000000 END",
+            nullptr, nullptr, nullptr),
+        SQLITE_OK);
+    sqlite3_close(db);
+    const auto source = openImportSource(folder / "a.db3");
+    int scans = 0;
+    for (; source->next(); scans++)
+    {
+        EXPECT_GE(source->progress(), 0);
+        EXPECT_LE(source->progress(), 1);
+    }
+    EXPECT_EQ(scans, 3);
+}
+
+TEST(ASqlite3Bag, WhoseMessagesAreComputedIsRefused)
+{
+    const TemporaryFolder folder;
+    writeSqlite3Bag(folder / "a.db3", clouds(syntheticSweeps(1), TestWire::Cdr));
+    sqlite3* db = nullptr;
+    sqlite3_open(std::string(folder / "a.db3").c_str(), &db);
+    ASSERT_EQ(
+        sqlite3_exec(
+            db,
+            "DROP TABLE messages; CREATE VIEW messages AS WITH RECURSIVE m(id) AS (VALUES(1) UNION "
+            "ALL SELECT id + 1 FROM m) SELECT id, 1 AS topic_id, 0 AS timestamp, x'' AS data FROM "
+            "m",
+            nullptr, nullptr, nullptr),
+        SQLITE_OK);
+    sqlite3_close(db);
+    EXPECT_THAT(failure(folder / "a.db3"), testing::HasSubstr("'messages' is no table"));
 }
 
 TEST(AFileCompressedAsAWhole, SaysWhatToDo)

@@ -8,6 +8,7 @@
 #include "hesai_packets.h"
 #include "import_support.h"
 #include "taut/core/Geometry.h"
+#include "taut/importing/pcap/PacketDecoder.h"
 #include "taut/packets/hesai/FrameAssembler.h"
 #include "temporary_folder.h"
 
@@ -287,6 +288,16 @@ TEST_F(AHesaiCapture, WithACorrectionFileOfAnotherSensorFails)
     EXPECT_THAT(import(folder_ / "none.csv").failure, HasSubstr("cannot read"));
     write("run.csv", correctionOf(Model::Xt32M));
     EXPECT_THAT(import().failure, HasSubstr("of another sensor: the elevation of channel 1"));
+}
+
+TEST(AHesaiDecoder, NeedsNoRecordingForTheAnglesOfTheDataSheet)
+{
+    const auto decoder = makeHesaiDecoder("", "", StampClock::Sensor);
+    ImportedItems items;
+    UdpDatagram datagram;
+    datagram.payload = HesaiPacket(Model::Xt32).bytes;
+    decoder->add(datagram, items);
+    EXPECT_EQ(decoder->findings().at(0), "Hesai PandarXT, one return: 1 packets");
 }
 
 TEST_F(AHesaiCapture, OfASensorThatIsNotKnownIsNamed)

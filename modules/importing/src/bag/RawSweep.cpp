@@ -172,6 +172,7 @@ RawSweep toRawSweep(const PointCloud2& cloud, const std::string& time_field)
         sweep.nominal_unit = columns.time->nominalTimeUnit();
         sweep.single_precision = columns.time->isFloat32();
     }
+    if (cloud.width == 0) return sweep;  // whatever number of rows it claims
     for (std::uint32_t row = 0; row < cloud.height; row++)
         for (std::uint32_t column = 0; column < cloud.width; column++)
         {

@@ -35,6 +35,7 @@ class Sqlite3Bag : public BagReader
         // So that a database that lost its end can be read as far as it goes; nothing is written.
         sqlite3_exec(raw, "PRAGMA writable_schema=ON", nullptr, nullptr, nullptr);
         checkLength(size);
+        refuseViews();
         first_id_ = idAt("MIN");
         last_id_ = idAt("MAX");
     }
@@ -85,8 +86,10 @@ class Sqlite3Bag : public BagReader
 
     double progress() const override
     {
-        if (last_id_ <= first_id_ || now_id_ < first_id_) return 0;
-        return static_cast<double>(now_id_ - first_id_) / static_cast<double>(last_id_ - first_id_);
+        if (last_id_ <= first_id_) return 0;
+        // As doubles: any integer can be an identifier, and in a damaged file the last is not.
+        const double first = static_cast<double>(first_id_), last = static_cast<double>(last_id_);
+        return std::clamp((static_cast<double>(now_id_) - first) / (last - first), 0.0, 1.0);
     }
 
  private:
@@ -111,6 +114,17 @@ class Sqlite3Bag : public BagReader
             warn(
                 "bag_truncated", path_ + " has " + std::to_string(size) + " of " +
                                      std::to_string(expected) + " bytes; what is there is read");
+    }
+
+    /** A view can compute rows without end. */
+    void refuseViews()
+    {
+        const auto views = prepare(
+            "SELECT name FROM sqlite_master WHERE type = 'view' AND "
+            "name COLLATE NOCASE IN ('messages', 'topics')");
+        if (sqlite3_step(views.get()) == SQLITE_ROW)
+            throw std::runtime_error(
+                path_ + " is no ROS 2 bag: its '" + textAt(views, 0) + "' is no table");
     }
 
     /** The first or last identifier of a message; 0 if the database is damaged there. */

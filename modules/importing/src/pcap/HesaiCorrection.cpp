@@ -96,10 +96,10 @@ HesaiAngles findHesaiAngles(
         beside += ".csv";
     else
         beside.replace_extension(".csv");
-    if (!recording.empty() && fs::exists(beside, error)) return load(beside, model);
+    if (recording.empty()) return {hesai::defaultCalibration(model), ""};
+    if (fs::exists(beside, error)) return load(beside, model);
     const fs::path folder = is_folder ? path : fs::absolute(path).parent_path();
-    if (!recording.empty())
-        if (auto found = findIn(folder, model)) return *found;
+    if (auto found = findIn(folder, model)) return *found;
     return {hesai::defaultCalibration(model), ""};
 }
 }  // namespace taut
