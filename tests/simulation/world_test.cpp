@@ -158,6 +158,25 @@ TEST(MeshFile, SaysWhatIsWrong)
     EXPECT_THAT(with("v 0 0 0\nf 1 2 3\n"), HasSubstr("vertex 1"));
     EXPECT_THAT(with("hello\n"), HasSubstr("no faces"));
     EXPECT_THAT(with("ply\nformat ascii 1.0\n"), HasSubstr("header has no end"));
+    // Elements that take no bytes went on for ever, or until the memory was full.
+    const std::string begin = "ply\nformat ascii 1.0\nelement ";
+    EXPECT_THAT(
+        with(begin + "vertex 18446744073709551615\nend_header\n"), HasSubstr("no properties"));
+    EXPECT_THAT(with(begin + "vertex many\nend_header\n"), HasSubstr("without a name or a number"));
+    // The cast overflowed.
+    EXPECT_THAT(
+        with(
+            begin + "face 1\nproperty list uchar double vertex_indices\nend_header\n3 0 1e300 1\n"),
+        HasSubstr("does not exist"));
+}
+
+TEST(MeshFile, MayHaveEmptyLinesInItsHeader)
+{
+    const taut::test::TemporaryFolder folder;
+    std::string text = kPyramidPly;
+    text.insert(text.find("property"), "\n \n");  // the element was taken to be there twice
+    std::ofstream(folder / "a.ply") << text;
+    EXPECT_EQ(loadMesh(folder / "a.ply", 0.5F).vertices.size(), 5U);
 }
 
 TEST(RayCaster, FindsTheNearestSurfaceExactly)

@@ -118,7 +118,7 @@ std::vector<PlyElement> plyHeader(std::istream& file, bool& text, const std::str
     while (std::getline(file, line))
     {
         std::istringstream s(line);
-        s >> word;
+        if (!(s >> word)) continue;
         if (word == "end_header") return elements;
         if (word == "format")
         {
@@ -130,7 +130,8 @@ std::vector<PlyElement> plyHeader(std::istream& file, bool& text, const std::str
         else if (word == "element")
         {
             elements.emplace_back();
-            s >> elements.back().name >> elements.back().count;
+            if (!(s >> elements.back().name >> elements.back().count))
+                fail(path, "its header has an element without a name or a number");
         }
         else if (word == "property" && !elements.empty())
         {
@@ -144,11 +145,22 @@ std::vector<PlyElement> plyHeader(std::istream& file, bool& text, const std::str
     fail(path, "its header has no end");
 }
 
+/** The number of a vertex; -1 for what can be none. */
+std::int64_t vertexNumber(double value)
+{
+    constexpr double kMost = 4294967295.0;
+    return value >= 0 && value <= kMost ? static_cast<std::int64_t>(value) : -1;
+}
+
 Mesh loadPly(std::istream& file, float reflectivity, const std::string& path)
 {
     bool text = true;
     Mesh mesh;
     for (const PlyElement& element : plyHeader(file, text, path))
+    {
+        // Any number of them would fit into the file.
+        if (element.count > 0 && element.properties.empty())
+            fail(path, "its element '" + element.name + "' has no properties");
         for (std::size_t i = 0; i < element.count; i++)
         {
             std::map<std::string, double> scalars;
@@ -165,7 +177,7 @@ Mesh loadPly(std::istream& file, float reflectivity, const std::string& path)
                 {
                     const double value = plyNumber(file, p.type, text, path);
                     if (p.name == "vertex_indices" || p.name == "vertex_index")
-                        corners.push_back(static_cast<std::int64_t>(value));
+                        corners.push_back(vertexNumber(value));
                 }
             }
             if (element.name == "vertex")
@@ -173,6 +185,7 @@ Mesh loadPly(std::istream& file, float reflectivity, const std::string& path)
             else if (element.name == "face")
                 addPolygon(mesh, corners, reflectivity, path);
         }
+    }
     return mesh;
 }
 }  // namespace
