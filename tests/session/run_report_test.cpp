@@ -112,6 +112,30 @@ TEST_F(ARunReport, WarnsOfResultsThatAreDamagedAndGoesOn)
     EXPECT_EQ(report.path.size(), 50u);
 }
 
+TEST_F(ARunReport, TakesNoMetricsOfAnotherShape)
+{
+    // Each ended the report with an exception of the JSON library, or a cast that overflows.
+    for (const char* text :
+         {"[]", "7", R"({"doubtful": [{"from": 1e300, "to": 1, "cause": "", "recovered": true}]})",
+          R"({"warnings": {"imu_gap": -1e300}})"})
+    {
+        SCOPED_TRACE(text);
+        told.clear();
+        write("metrics.json", text);
+        const Report report = read();
+        EXPECT_EQ(told.size(), 1u);
+        EXPECT_EQ(report.path.size(), 50u);
+    }
+    for (const char* text : {R"({"input": {"file": 7}})", R"({"input": [1, 2]})"})
+    {
+        SCOPED_TRACE(text);
+        told.clear();
+        write("metrics.json", text);
+        EXPECT_EQ(read().path.size(), 50u);
+        EXPECT_TRUE(told.empty());
+    }
+}
+
 TEST_F(ARunReport, ComparesWithTheTruthOrSaysWhyNot)
 {
     const Pose T_truth_run{expSO3({0.1, 0.2, 0.3}), {4, 5, 6}};

@@ -38,7 +38,18 @@ std::string textOf(const fs::path& path)
 
 Time timeOf(const Json& seconds)
 {
-    return fromSeconds(seconds.get<double>());
+    constexpr double kLatest = 4e9;  // [s], the year 2096
+    const double t = seconds.get<double>();
+    if (!(std::abs(t) <= kLatest)) throw std::runtime_error("a time in it is none");
+    return fromSeconds(t);
+}
+
+std::size_t countOf(const Json& number)
+{
+    constexpr double kMost = 1e15;
+    const double n = number.get<double>();
+    if (!(n >= 0 && n <= kMost)) throw std::runtime_error("a number of warnings in it is none");
+    return static_cast<std::size_t>(n);
 }
 
 /** A number of metrics.json in words; nothing if it is not there. */
@@ -47,6 +58,13 @@ std::optional<double> numberAt(const Json& metrics, const char* pointer)
     const Json::json_pointer at(pointer);
     if (!metrics.contains(at) || !metrics[at].is_number()) return {};
     return metrics[at].get<double>();
+}
+
+/** A text of metrics.json; empty if it is not there. */
+std::string textAt(const Json& metrics, const char* pointer)
+{
+    const Json::json_pointer at(pointer);
+    return metrics.contains(at) && metrics[at].is_string() ? metrics[at].get<std::string>() : "";
 }
 
 /** Rows of a table out of metrics.json, of what is there. */
@@ -213,14 +231,16 @@ class Reader
 
     void readMetrics()
     {
-        metrics_ = Json::parse(textOf(folder_ / "metrics.json"));
+        Json metrics = Json::parse(textOf(folder_ / "metrics.json"));
+        if (!metrics.is_object()) throw std::runtime_error("it is no object");
+        metrics_ = std::move(metrics);
         report_.facts = factsOf(metrics_);
         for (const Json& d : listOf("doubtful"))
             report_.stretches.push_back(
                 {timeOf(d.at("from")), timeOf(d.at("to")), d.at("cause").get<std::string>(),
                  d.at("recovered").get<bool>()});
         for (const auto& [kind, count] : listOf("warnings").items())
-            report_.warnings.push_back({kind, count.get<std::size_t>(), {}});
+            report_.warnings.push_back({kind, countOf(count), {}});
         for (const Json& w : listOf("first_warnings"))
             for (ReportWarnings& kind : report_.warnings)
                 if (kind.kind == w.at("kind").get<std::string>())
@@ -291,7 +311,7 @@ class Reader
 
     void setHeadlines()
     {
-        const std::string input = metrics_.value("/input/file"_json_pointer, std::string());
+        const std::string input = textAt(metrics_, "/input/file");
         report_.title = fs::path(input).filename().string();
         if (report_.title.empty()) report_.title = fs::absolute(folder_).filename().string();
         report_.subtitle = "Run of taut in " + folder_.string();
