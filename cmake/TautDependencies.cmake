@@ -59,3 +59,8 @@ if(TAUT_SANITIZE)
                          -fno-sanitize=null,alignment)
   target_link_options(taut_options INTERFACE -fsanitize=${TAUT_SANITIZE})
 endif()
+if(TAUT_FUZZ)
+  # Every branch is counted, so that the fuzzer knows new ones. MRPT has no type information for checks of `vptr`.
+  target_compile_options(taut_options INTERFACE -fsanitize=fuzzer-no-link,float-cast-overflow -fno-sanitize=vptr)
+  target_link_options(taut_options INTERFACE -fno-sanitize=vptr)
+endif()

@@ -3,6 +3,7 @@
 # With --grabber also MRPT's sensor drivers and rawlog-grabber, which pull in Qt and wxWidgets.
 # With --browser also chromium, in which the tests look at report.html (124 MB to fetch, 414 MB installed).
 # dpkg-dev and file are for cpack, man-db is for the tests of the manual pages.
+# With --fuzz also clang 14, with which tests/fuzz is built (68 MB to fetch, 355 MB installed).
 set -euo pipefail
 packages=(
   g++ cmake ninja-build pkg-config
@@ -18,6 +19,7 @@ for option in "$@"; do
   case "$option" in
     --grabber) packages+=(libmrpt-hwdrivers-dev mrpt-apps) ;;
     --browser) packages+=(chromium) ;;
+    --fuzz) packages+=(clang-14 libclang-rt-14-dev llvm-14) ;;
     *) echo "$0: unknown option '$option'" >&2; exit 2 ;;
   esac
 done

@@ -3,7 +3,6 @@
 #include <mrpt/obs/CObservationComment.h>
 #include <mrpt/obs/CObservationGPS.h>
 #include <mrpt/obs/CObservationPointCloud.h>
-#include <mrpt/obs/CObservationRotatingScan.h>
 #include <mrpt/rtti/CObject.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -30,37 +29,6 @@ double peakMemory()
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<double>(usage.ru_maxrss) / 1024;
-}
-
-/** Every vector of the class holds something. */
-mrpt::obs::CObservationVelodyneScan fullVelodyneScan(Time t)
-{
-    auto o = mrptScan(t);
-    o.scan_packets.resize(2);
-    o.calibration.laser_corrections.resize(3);
-    o.point_cloud.azimuth.resize(7);
-    o.point_cloud.pointsForLaserID = {{1}, {}, {2, 3}};
-    return o;
-}
-
-mrpt::obs::CObservationRotatingScan rotatingScan(Time t)
-{
-    mrpt::obs::CObservationRotatingScan o;
-    o.timestamp = mrptTime(t);
-    o.sensorLabel = "LIDAR";
-    o.lidarModel = "HDL-32E";
-    o.rowCount = 32;
-    o.columnCount = 6;
-    o.azimuthSpan = -6;
-    o.sweepDuration = 0.1;
-    o.rangeResolution = 0.01;
-    o.rangeImage.resize(32, 6);
-    o.rangeImage.fill(500);
-    o.intensityImage.resize(32, 6);
-    o.intensityImage.fill(9);
-    o.rangeOtherLayers["STRONGEST"] = o.rangeImage;
-    o.rangeOtherLayers["LAST"] = o.rangeImage;
-    return o;
 }
 
 /** One of every class of observations that MRPT has, except those that taut reads. */

@@ -2,6 +2,7 @@
 
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CObservationIMU.h>
+#include <mrpt/obs/CObservationRotatingScan.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/archiveFrom_std_vector.h>
@@ -90,6 +91,37 @@ inline mrpt::obs::CObservationVelodyneScan mrptScan(Time t, const std::string& l
         o.point_cloud.timestamp.push_back(mrptTime(t + point.offset));
         o.point_cloud.laser_id.push_back(static_cast<std::int16_t>(point.ring));
     }
+    return o;
+}
+
+/** Every vector of the class holds something. */
+inline mrpt::obs::CObservationVelodyneScan fullVelodyneScan(Time t)
+{
+    auto o = mrptScan(t);
+    o.scan_packets.resize(2);
+    o.calibration.laser_corrections.resize(3);
+    o.point_cloud.azimuth.resize(7);
+    o.point_cloud.pointsForLaserID = {{1}, {}, {2, 3}};
+    return o;
+}
+
+inline mrpt::obs::CObservationRotatingScan rotatingScan(Time t)
+{
+    mrpt::obs::CObservationRotatingScan o;
+    o.timestamp = mrptTime(t);
+    o.sensorLabel = "LIDAR";
+    o.lidarModel = "HDL-32E";
+    o.rowCount = 32;
+    o.columnCount = 6;
+    o.azimuthSpan = -6;
+    o.sweepDuration = 0.1;
+    o.rangeResolution = 0.01;
+    o.rangeImage.resize(32, 6);
+    o.rangeImage.fill(500);
+    o.intensityImage.resize(32, 6);
+    o.intensityImage.fill(9);
+    o.rangeOtherLayers["STRONGEST"] = o.rangeImage;
+    o.rangeOtherLayers["LAST"] = o.rangeImage;
     return o;
 }
 }  // namespace taut::test
