@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "taut/core/Config.h"
 #include "temporary_folder.h"
 
 using namespace taut;
@@ -112,6 +113,28 @@ TEST(Yaml, SettingsAreLaidOverATree)
     EXPECT_EQ(root.find("a")->find("b")->scalar, "2");
     EXPECT_EQ(root.find("c")->find("d")->find("e")->scalar, "5");
     EXPECT_THROW(root.section("value.x"), ConfigError);
+}
+
+TEST(Yaml, ATextThatIsWrittenIsReadBackWhateverIsInIt)
+{
+    // The end of a line became a blank.
+    for (const std::string text :
+         {"two\nlines", "\n\n", "it's \"quoted\" \\ twice\t", " blanks ", "", "#1: [a, {b}]",
+          "\xc3\xa4\r\n\x01", "\xef\xbb\xbf mark"})
+    {
+        SCOPED_TRACE(text);
+        YamlNode node;
+        node.section("a").set(text, text);
+        const YamlNode back = parseYaml(yamlText(node));
+        const YamlNode* section = back.find("a");
+        ASSERT_NE(section, nullptr);
+        ASSERT_NE(section->find(text), nullptr);
+        EXPECT_EQ(section->find(text)->scalar, text);
+        std::string value = text;
+        ConfigSection config;
+        config.key("name", value, "of a file");
+        EXPECT_EQ(parseYaml(config.effective()).find("name")->scalar, text);
+    }
 }
 
 TEST(YamlFile, WhatIsNoFileIsRefusedAtOnce)

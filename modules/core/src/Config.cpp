@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "taut/core/quotedYaml.h"
+
 namespace taut
 {
 namespace
@@ -128,9 +130,7 @@ void ConfigSection::key(const std::string& name, bool& value, const std::string&
 void ConfigSection::key(const std::string& name, std::string& value, const std::string& doc)
 {
     if (const auto text = textOf(name)) value = *text;
-    std::string quoted = "'";
-    for (const char c : value) quoted += c == '\'' ? std::string("''") : std::string(1, c);
-    record(name, quoted + "'", doc);
+    record(name, quotedYaml(value), doc);
 }
 
 void ConfigSection::key(

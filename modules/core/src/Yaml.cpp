@@ -11,6 +11,9 @@
 #include <map>
 #include <sstream>
 
+#include "taut/core/format.h"
+#include "taut/core/quotedYaml.h"
+
 namespace taut
 {
 namespace
@@ -262,24 +265,36 @@ YamlNode parseYaml(const std::string& text, const std::string& name)
     }
 }
 
+std::string quotedYaml(const std::string& text)
+{
+    const auto isControl = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+    std::string quoted;
+    if (std::none_of(text.begin(), text.end(), isControl))
+    {
+        for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+        return "'" + quoted + "'";
+    }
+    // Between single quotes, the end of a line would be a blank.
+    for (const char c : text)
+        if (isControl(static_cast<unsigned char>(c)))
+            quoted += format("\\x%02x", static_cast<unsigned>(c));
+        else
+            quoted += c == '"' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
+    return "\"" + quoted + "\"";
+}
+
 namespace
 {
 /** As a flow value, quoted, or as a block that begins on a line of its own. */
 void print(const YamlNode& node, int indent, std::string& out)
 {
-    const auto quoted = [](const std::string& text)
-    {
-        std::string q = "'";
-        for (const char c : text) q += c == '\'' ? std::string("''") : std::string(1, c);
-        return q + "'";
-    };
     switch (node.kind)
     {
         case YamlNode::Kind::Null:
             out += "\n";
             return;
         case YamlNode::Kind::Scalar:
-            out += " " + quoted(node.scalar) + "\n";
+            out += " " + quotedYaml(node.scalar) + "\n";
             return;
         case YamlNode::Kind::List:
             if (node.list.empty()) out += " []";
@@ -294,7 +309,8 @@ void print(const YamlNode& node, int indent, std::string& out)
             if (indent > 0) out += "\n";
             for (const YamlNode::Entry& entry : node.map)
             {
-                out += std::string(static_cast<std::size_t>(indent), ' ') + quoted(entry.key) + ":";
+                out += std::string(static_cast<std::size_t>(indent), ' ') + quotedYaml(entry.key) +
+                       ":";
                 print(entry.value, indent + 2, out);
             }
             return;
