@@ -169,8 +169,14 @@ TEST_F(AKittiFolder, WithMissingFilesSaysWhich)
     EXPECT_EQ(all.warnings.count("no_calibration"), 1U);
     EXPECT_EQ(all.warnings.count("no_imu"), 1U);
 
-    std::ofstream(path(points + "timestamps_end.txt")) << "2011-09-26 13:02:2x\n";
-    EXPECT_THAT(importAll(path(kDrive)).failure, HasSubstr("timestamps_end.txt:1:"));
+    // The last three overflowed, or were other times.
+    for (const char* text :
+         {"2011-09-26 13:02:2x", "2011-2000000000-26 13:02:25", "2011-09-26 13:2000000000:25",
+          "2011-09-26 13:02:9000000000"})
+    {
+        std::ofstream(path(points + "timestamps_end.txt")) << text << "\n";
+        EXPECT_THAT(importAll(path(kDrive)).failure, HasSubstr("timestamps_end.txt:1:")) << text;
+    }
     fs::remove(path(points + "timestamps_end.txt"));
     EXPECT_THAT(importAll(path(kDrive)).failure, HasSubstr("timestamps_end.txt"));
 }

@@ -34,7 +34,14 @@ std::vector<std::string> linesOf(const fs::path& file)
     return lines;
 }
 
-constexpr int kLastYear = 2200;  // nanoseconds end in 2262
+constexpr Time kSecond = 1'000'000'000;
+constexpr int kLastYear = 2200;                      // nanoseconds end in 2262
+constexpr Time kLatest = 4'000'000'000'000'000'000;  // [ns]: differences do not overflow
+
+bool within(Time value, Time least, Time most)
+{
+    return value >= least && value <= most;
+}
 
 Time parseDate(const std::string& text)
 {
@@ -43,12 +50,15 @@ Time parseDate(const std::string& text)
     if (std::sscanf(
             text.c_str(), "%d-%d-%d %d:%d:%n", &date.tm_year, &date.tm_mon, &date.tm_mday,
             &date.tm_hour, &date.tm_min, &read) != 5 ||
-        read == 0 || date.tm_year < 1970 || date.tm_year > kLastYear)
+        read == 0 || !within(date.tm_year, 1970, kLastYear) || !within(date.tm_mon, 1, 12) ||
+        !within(date.tm_mday, 1, 31) || !within(date.tm_hour, 0, 23) || !within(date.tm_min, 0, 59))
+        throw std::invalid_argument("'" + text + "' is no date and time");
+    const Time seconds = parseSeconds(text.substr(static_cast<std::size_t>(read)));
+    if (!within(seconds, 0, 61 * kSecond))  // a leap second is the 60th
         throw std::invalid_argument("'" + text + "' is no date and time");
     date.tm_year -= 1900;
     date.tm_mon -= 1;
-    return static_cast<Time>(timegm(&date)) * 1'000'000'000 +
-           parseSeconds(text.substr(static_cast<std::size_t>(read)));
+    return static_cast<Time>(timegm(&date)) * kSecond + seconds;
 }
 
 std::vector<float> readFloats(const fs::path& file)
@@ -91,7 +101,10 @@ std::vector<Time> readTimes(const fs::path& file)
     std::vector<Time> times;
     for (const std::string& line : linesOf(file)) try
         {
-            times.push_back(parseSeconds(line));
+            const Time t = parseSeconds(line);
+            if (!within(t, -kLatest, kLatest))
+                throw std::invalid_argument("time '" + line + "' is out of range");
+            times.push_back(t);
         }
         catch (const std::invalid_argument& e)
         {
@@ -131,10 +144,12 @@ Scan readPoints(
     if (values.size() % 4 != 0)
         throw std::runtime_error("'" + file.string() + "' does not hold four numbers a point");
     ScanBuilder builder(stamp, values.size() / 4);
+    const auto is_direction = [&values](std::size_t i)
+    { return std::isfinite(values[i]) && std::isfinite(values[i + 1]); };
     for (std::size_t i = 0; i < values.size(); i += 4)
         builder.add(
             {values[i], values[i + 1], values[i + 2]}, 255 * values[i + 3],
-            stamp + offset_of(values[i], values[i + 1]), 0);
+            is_direction(i) ? stamp + offset_of(values[i], values[i + 1]) : stamp, 0);
     Scan scan = builder.finish();
     if (scan.points.empty()) throw std::runtime_error("'" + file.string() + "' has no valid point");
     return scan;
