@@ -1,6 +1,7 @@
 #include "taut/submaps/SubmapFile.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 #include <fstream>
@@ -113,6 +114,25 @@ TEST(ASubmapFile, ThatIsDamagedIsRefused)
     write(path, "");
     EXPECT_NE(faultOf(path).find("no submap"), std::string::npos);
     EXPECT_NE(faultOf(folder / "none.tsm").find("No such file"), std::string::npos);
+}
+
+TEST(ASubmapFile, TakesNoMemoryForASizeThatIsDamaged)
+{
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.tsm";
+    writeSubmap(path, anySubmap(1));
+    std::string bad = contentOf(path);
+    bad[11] = 0x30;  // 768 MB, of data that the checksum does not cover
+    write(path, bad);
+    const auto peak = []  // [kB]
+    {
+        rusage usage{};
+        getrusage(RUSAGE_SELF, &usage);
+        return usage.ru_maxrss;
+    };
+    const long before = peak();
+    EXPECT_NE(faultOf(path).find("damaged"), std::string::npos) << faultOf(path);
+    EXPECT_LT(peak() - before, 300'000);
 }
 
 TEST(ASubmapFile, ThatCannotBeWrittenIsAnError)

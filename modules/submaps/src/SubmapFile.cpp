@@ -9,8 +9,10 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <stdexcept>
 #include <type_traits>
+#include <vector>
 
 namespace taut
 {
@@ -175,15 +177,25 @@ std::string compressed(const std::string& data)
     return out;
 }
 
+/** Memory follows what comes out: the size in the header may be damaged too. */
 std::string uncompressed(const std::string& data, std::size_t size)
 {
-    std::string out(size, '\0');
-    uLongf written = size;
-    if (uncompress(
-            reinterpret_cast<Bytef*>(out.data()), &written,
-            reinterpret_cast<const Bytef*>(data.data()), data.size()) != Z_OK ||
-        written != size)
-        throw std::runtime_error("it is damaged");
+    z_stream stream{};
+    if (inflateInit(&stream) != Z_OK) throw std::runtime_error("zlib cannot decompress");
+    const std::unique_ptr<z_stream, int (*)(z_stream*)> closer(&stream, inflateEnd);
+    stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(data.data()));
+    stream.avail_in = static_cast<uInt>(data.size());
+    std::string out;
+    std::vector<char> buffer(1 << 18);
+    int result = Z_OK;
+    while (result == Z_OK && out.size() <= size)
+    {
+        stream.next_out = reinterpret_cast<Bytef*>(buffer.data());
+        stream.avail_out = static_cast<uInt>(buffer.size());
+        result = inflate(&stream, Z_NO_FLUSH);
+        out.append(buffer.data(), buffer.size() - stream.avail_out);
+    }
+    if (result != Z_STREAM_END || out.size() != size) throw std::runtime_error("it is damaged");
     return out;
 }
 
