@@ -349,6 +349,14 @@ TEST_F(ABagFolder, TellsWhichPartIsMissing)
     EXPECT_THAT(result.warnings.kept().front().text, testing::HasSubstr("log_9.db3"));
 }
 
+TEST_F(ABagFolder, IsNoPartOfItself)
+{
+    writeMetadata("['', ., log_8.db3, log_9.db3, log_10.db3]");  // it was read in itself for ever
+    const Imported result = import(folder_ / "bag");
+    EXPECT_EQ(result.scans.size(), 6u);
+    EXPECT_EQ(result.warnings.count("bag_file_missing"), 2u);
+}
+
 TEST_F(ABagFolder, WithBrokenMetadataSaysSo)
 {
     std::ofstream(folder_ / "bag/metadata.yaml") << "rosbag2_bagfile_information: {";

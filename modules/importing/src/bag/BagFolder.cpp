@@ -62,12 +62,13 @@ class BagFolder : public BagReader
     {
         for (const fs::path& part : partsOfBag(folder))
         {
-            if (fs::exists(part))
+            if (fs::is_regular_file(part))  // a folder could be this one
                 parts_.push_back(part);
             else if (warn_)
                 warn_(
                     {0, "bag_file_missing",
-                     part.string() + " is a part of the bag, by metadata.yaml, and not there"});
+                     part.string() +
+                         " is a part of the bag, by metadata.yaml, and no file that is there"});
         }
         if (parts_.empty()) throw std::runtime_error("no part of the bag is in " + folder.string());
     }
@@ -129,7 +130,7 @@ std::vector<fs::path> partsOfBag(const fs::path& folder)
     if (fs::exists(folder / "metadata.yaml")) return partsOfMetadata(folder);
     std::vector<fs::path> parts;
     for (const auto& entry : fs::directory_iterator(folder))
-        if (hasBagName(entry.path())) parts.push_back(entry.path());
+        if (hasBagName(entry.path()) && entry.is_regular_file()) parts.push_back(entry.path());
     std::sort(
         parts.begin(), parts.end(),
         [](const fs::path& a, const fs::path& b)
