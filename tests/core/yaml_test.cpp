@@ -137,6 +137,12 @@ TEST(Yaml, ATextThatIsWrittenIsReadBackWhateverIsInIt)
     }
 }
 
+TEST(Yaml, AnEmptyMapOrListStaysOne)
+{
+    for (const std::string text : {"{}\n", "'a': {}\n", "'a': []\n"})
+        EXPECT_EQ(yamlText(parseYaml(text)), text);
+}
+
 TEST(YamlFile, WhatIsNoFileIsRefusedAtOnce)
 {
     const taut::test::TemporaryFolder folder;

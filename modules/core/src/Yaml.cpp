@@ -306,7 +306,8 @@ void print(const YamlNode& node, int indent, std::string& out)
             }
             return;
         case YamlNode::Kind::Map:
-            if (indent > 0) out += "\n";
+            if (node.map.empty()) out += indent > 0 ? " {}" : "{}";
+            if (indent > 0 || node.map.empty()) out += "\n";
             for (const YamlNode::Entry& entry : node.map)
             {
                 out += std::string(static_cast<std::size_t>(indent), ' ') + quotedYaml(entry.key) +
