@@ -1,9 +1,6 @@
 #include "SensorOfTopic.h"
 
 #include <map>
-#include <regex>
-
-#include "taut/core/Config.h"
 
 namespace taut::bag
 {
@@ -18,18 +15,6 @@ std::string quoted(const std::set<std::string>& names)
     return text;
 }
 
-bool matches(const std::string& name, const std::string& expression)
-{
-    try
-    {
-        return std::regex_match(name, std::regex(expression, std::regex::ECMAScript));
-    }
-    catch (const std::regex_error& e)
-    {
-        throw ConfigError(
-            "--lidar-id '" + expression + "' is not a regular expression: " + e.what());
-    }
-}
 }  // namespace
 
 void SensorOfTopic::learn(const std::vector<const RawSweep*>& sweeps)
@@ -42,7 +27,7 @@ void SensorOfTopic::learn(const std::vector<const RawSweep*>& sweeps)
     {
         all.insert(name);
         if (count > 1 || counts.size() == 1) usual.insert(name);
-        any_matches |= !expression_.empty() && matches(name, expression_);
+        any_matches |= !expression_.empty() && name_.matches(name);
     }
     if (any_matches) return;
     if (!expression_.empty())
@@ -58,7 +43,7 @@ void SensorOfTopic::learn(const std::vector<const RawSweep*>& sweeps)
 
 bool SensorOfTopic::isOf(const RawSweep& sweep) const
 {
-    return expression_.empty() ? sweep.sensor == sensor_ : matches(sweep.sensor, expression_);
+    return expression_.empty() ? sweep.sensor == sensor_ : name_.matches(sweep.sensor);
 }
 
 bool SensorOfTopic::takes(const RawSweep& sweep)

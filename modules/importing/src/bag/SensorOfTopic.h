@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "RawSweep.h"
+#include "taut/core/NameExpression.h"
 
 namespace taut::bag
 {
@@ -13,7 +14,10 @@ class SensorOfTopic
 {
  public:
     /** `expression`: regular expression for the whole name, or empty. */
-    explicit SensorOfTopic(std::string expression) : expression_(std::move(expression)) {}
+    explicit SensorOfTopic(std::string expression)
+        : name_("--lidar-id", expression), expression_(std::move(expression))
+    {
+    }
 
     /** Chooses what matches the expression; else the only one that more than one of these sweeps
      * are of. Throws std::runtime_error, naming them, if it is none or several. */
@@ -28,6 +32,7 @@ class SensorOfTopic
     std::string nameOfOthers() const;  //!< "'a', 'b'"
 
  private:
+    NameExpression name_;
     std::string expression_, sensor_;
     std::size_t others_ = 0;
     std::set<std::string> names_of_others_;
