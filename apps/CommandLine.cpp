@@ -179,7 +179,13 @@ CommandTable tableOf(TCLAP::CmdLineInterface& cmd, const std::string& program, c
     table.program = program;
     table.version = cmd.getVersion();
     describe(cmd.getMessage(), table);
-    for (TCLAP::Arg* arg : argumentsOf(cmd)) table.entries.push_back(entryOf(*arg));
+    for (TCLAP::Arg* arg : argumentsOf(cmd))
+    {
+        const auto& also = usage.required;
+        table.entries.push_back(entryOf(*arg));
+        if (std::find(also.begin(), also.end(), arg) != also.end())
+            table.entries.back().required = true;
+    }
     table.synopses.push_back(synopsisOf(table.entries));
     if (usage.alone != nullptr)
         table.synopses.push_back("--" + usage.alone->getName() + " [options]");

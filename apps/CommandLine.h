@@ -24,6 +24,8 @@ struct Usage
     std::vector<std::string> examples;  //!< arguments without the program's name
     /** A switch that needs none of the required arguments; null: there is none. */
     const TCLAP::SwitchArg* alone = nullptr;
+    /** What the program requires, though TCLAP does not: it may be given in another way. */
+    std::vector<const TCLAP::Arg*> required = {};
 };
 
 /** Parses the command line. False if that was all there was to do (--help, --version). Throws

@@ -1,14 +1,17 @@
 #pragma once
 
+#include <filesystem>
 #include <limits>
 #include <string>
 
-#include "CommandLine.h"
-#include "scanTimesOf.h"
+#include "ImportArguments.h"
+#include "taut/importing/Import.h"
+#include "taut/importing/openImportSource.h"
 
 namespace taut
 {
-/** The options of every program that reads a rawlog: rig, sensors, part of the time. */
+/** The options of every program that reads a recording: rig, sensors, part of the time, and how a
+ * recording that is no rawlog is to be read. */
 class LogArguments
 {
  public:
@@ -19,30 +22,53 @@ class LogArguments
               false, "", "RIG.yaml", cmd),
           lidar_(
               "", "lidar",
-              "Sensor label of the LiDAR, a regular expression (default: the only one)", false, "",
-              "REGEX", cmd),
+              "Rawlogs: sensor label of the LiDAR, a regular expression (default: the only one)",
+              false, "", "REGEX", cmd),
           imu_(
-              "", "imu", "Sensor label of the IMU, a regular expression (default: the only one)",
+              "", "imu",
+              "Rawlogs: sensor label of the IMU, a regular expression (default: the only one)",
               false, "", "REGEX", cmd),
           from_(
               "", "from-time", "Leave out what is earlier: seconds since the start of the log",
               false, 0, "SECONDS", cmd),
           to_("", "to-time", "End there: seconds since the start of the log", false,
               std::numeric_limits<double>::infinity(), "SECONDS", cmd),
-          times_(
-              "", "scan-times",
-              "Scans without times of their points: azimuth tells them, or none (default auto: the "
-              "azimuth of a sensor that turns, unless the scans are undistorted already)",
-              false, "auto", "auto|azimuth|none", cmd)
+          import_(cmd)
     {
     }
 
     const std::string& rig() { return rig_.getValue(); }
-    const std::string& lidarLabel() { return lidar_.getValue(); }
-    const std::string& imuLabel() { return imu_.getValue(); }
-    ScanTimes scanTimes() { return scanTimesOf(times_.getValue()); }
-    double fromTime() { return from_.getValue(); }
-    /** Throws UsageError if the part of the time is none. */
+
+    /** What the options say of the recording in `path`. Throws UsageError if the part of the time
+     * is none or an option is for another kind of recording, ConfigError for the rig file. */
+    RawlogConfig log(const std::string& path)
+    {
+        RawlogConfig config;
+        config.path = path;
+        config.lidar_label = lidar_.getValue();
+        config.imu_label = imu_.getValue();
+        config.to_time = toTime();
+        config.from_time = from_.getValue();
+        if (!rig().empty()) config.rig = loadRig(rig());
+        const ImportOptions options = import_.options();
+        config.scan_times = options.scan_times;
+        if (canBeImported(path))
+        {
+            if (lidar_.isSet() || imu_.isSet())
+                throw UsageError(
+                    "--lidar and --imu choose by label in a rawlog, which '" + path +
+                    "' is not; in a bag --lidar-topic and --imu-topic do");
+            readByImport(config, options);
+        }
+        else if (!import_.given().empty() && std::filesystem::exists(path))
+        {
+            throw UsageError(
+                import_.given() + " is for captures and bags, and '" + path + "' is none");
+        }
+        return config;
+    }
+
+ private:
     double toTime()
     {
         if (from_.getValue() < 0 || !(to_.getValue() > from_.getValue()))
@@ -53,9 +79,8 @@ class LogArguments
         return to_.getValue();
     }
 
- private:
     TCLAP::ValueArg<std::string> rig_, lidar_, imu_;
     TCLAP::ValueArg<double> from_, to_;
-    TCLAP::ValueArg<std::string> times_;
+    ImportArguments import_;
 };
 }  // namespace taut

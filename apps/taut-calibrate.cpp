@@ -43,7 +43,7 @@ std::optional<Options> parse(int argc, char** argv)
         "many places. Exit codes: 0 done, 1 failed, 2 bad usage.",
         ' ', TAUT_VERSION);
     TCLAP::UnlabeledValueArg<std::string> input(
-        "LOG.rawlog", "Rawlog of a LiDAR with rings, and an IMU", true, "", "LOG.rawlog", cmd);
+        "recording", "Recording of a LiDAR with rings, and an IMU", true, "", "RECORDING", cmd);
     TCLAP::ValueArg<std::string> output(
         "o", "output", "Rig file to write: that of -r with the beams", true, "", "RIG.yaml", cmd);
     taut::LogArguments part(cmd);
@@ -61,17 +61,8 @@ std::optional<Options> parse(int argc, char** argv)
             cmd, argc, argv, {{"LOG.rawlog -o rig.yaml", "LOG.rawlog -r rig.yaml -o better.yaml"}}))
         return {};
     Options o;
-    o.log.path = input.getValue();
-    o.log.lidar_label = part.lidarLabel();
-    o.log.imu_label = part.imuLabel();
-    o.log.from_time = part.fromTime();
-    o.log.to_time = part.toTime();
-    o.log.scan_times = part.scanTimes();
-    if (!part.rig().empty())
-    {
-        o.rig = taut::readYamlFile(part.rig());
-        o.log.rig = taut::loadRig(part.rig());
-    }
+    o.log = part.log(input.getValue());
+    if (!part.rig().empty()) o.rig = taut::readYamlFile(part.rig());
     o.output = output.getValue();
     o.config = config.getValue();
     o.settings = set.getValue();

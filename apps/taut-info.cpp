@@ -22,14 +22,17 @@ std::optional<Options> parse(int argc, char** argv)
 {
     TCLAP::CmdLine cmd(
         "taut-info: a doctor for recordings. Tells the sensors, rates, units, rest and noise of a "
-        "rawlog, and what is wrong with it: gaps, stamps, clipped or damaged values, clocks that "
+        "recording (whatever taut-slam reads), and what is wrong with it: gaps, stamps, clipped or "
+        "damaged values, clocks that "
         "differ, an extrinsic rotation that does not fit. Each finding comes with its time, its "
         "value and what to do (docs/inspecting.md). Exit codes: 0 nothing found, 1 failed, 2 bad "
         "usage, 3 findings.",
         ' ', TAUT_VERSION);
     TCLAP::UnlabeledValueArg<std::string> input(
-        "LOG.rawlog", "Rawlog to look at (observations or sensory frames, gz or not)", true, "",
-        "LOG.rawlog", cmd);
+        "recording",
+        "The recording: rawlog (observations or sensory frames, gz or not), .bag, .mcap, .db3, "
+        "capture, or folder",
+        true, "", "RECORDING", cmd);
     taut::LogArguments part(cmd);
     TCLAP::ValueArg<double> window(
         "", "window",
@@ -48,16 +51,9 @@ std::optional<Options> parse(int argc, char** argv)
     if (!taut::parseCommandLine(cmd, argc, argv, usage)) return {};
 
     Options o;
-    taut::RawlogConfig& log = o.inspection.log;
-    log.path = input.getValue();
-    log.lidar_label = part.lidarLabel();
-    log.imu_label = part.imuLabel();
-    log.from_time = part.fromTime();
-    log.to_time = part.toTime();
-    log.scan_times = part.scanTimes();
+    o.inspection.log = part.log(input.getValue());
     if (!(window.getValue() >= 3 && window.getValue() <= 600))
         throw taut::UsageError("--window must be 3 to 600 s");
-    if (!part.rig().empty()) log.rig = taut::loadRig(part.rig());
     o.inspection.window = window.getValue();
     o.inspection.match_scans = !no_matching.getValue();
     o.threads = taut::threadsOf(threads.getValue());

@@ -1,6 +1,7 @@
 #include "Options.h"
 
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <sstream>
 
@@ -50,21 +51,52 @@ void requireMapFor(const Options& o, bool localize)
     if (o.map.empty() && (localize || o.extend_map || !o.start_at.empty()))
         throw UsageError("--localize, --extend and --start-at need a map: -m");
 }
+
+/** From one of the two places where it may stand. */
+std::string recordingOf(
+    TCLAP::UnlabeledValueArg<std::string>& argument, TCLAP::ValueArg<std::string>& option,
+    bool may_be_absent)
+{
+    if (argument.isSet() && option.isSet())
+        throw UsageError("unexpected argument '" + argument.getValue() + "'");
+    if (!argument.isSet() && !option.isSet() && !may_be_absent)
+        throw UsageError("argument RECORDING is required");
+    return argument.isSet() ? argument.getValue() : option.getValue();
+}
+
+/** "drive_taut" for "somewhere/drive.bag", here. */
+std::string folderFor(const std::string& recording)
+{
+    namespace fs = std::filesystem;
+    if (recording.empty()) return "";
+    const fs::path path = fs::absolute(recording).lexically_normal();
+    if (!path.has_filename()) return path.parent_path().filename().string() + "_taut";
+    if (fs::is_directory(path)) return path.filename().string() + "_taut";
+    const fs::path name = path.extension() == ".gz" ? path.stem() : path.filename();
+    return name.stem().string() + "_taut";
+}
 }  // namespace
 
 bool parseOptions(int argc, char** argv, Options& o)
 {
     TCLAP::CmdLine cmd(
-        "taut-slam: LiDAR-IMU SLAM that undistorts every point in every iteration. Reads an MRPT "
-        "rawlog with a 3D LiDAR and an IMU; writes the trajectory, the map and pictures of both "
-        "into a folder. Exit codes: 0 done, 1 failed, 2 bad usage, 3 done, but part of the log "
+        "taut-slam: LiDAR-IMU SLAM that undistorts every point in every iteration. Reads a "
+        "recording of a 3D LiDAR and an IMU (MRPT rawlog, ROS bag, packet capture, KITTI, folder "
+        "of clouds); writes the trajectory, the map and pictures of both into a folder. Exit "
+        "codes: 0 done, 1 failed, 2 bad usage, 3 done, but part of the log "
         "could not be used (the warnings and metrics.json say which and why).",
         ' ', TAUT_VERSION);
+    TCLAP::UnlabeledValueArg<std::string> recording(
+        "recording",
+        "The recording: rawlog (observations or sensory frames, gz or not), .bag, .mcap, .db3, "
+        "capture, or folder",
+        false, "", "RECORDING", cmd);
     TCLAP::ValueArg<std::string> input(
-        "i", "input", "Rawlog to process (observations or sensory frames, gz or not)", true, "",
-        "LOG.rawlog", cmd);
+        "i", "input", "The recording, instead of the argument RECORDING", false, "", "RECORDING",
+        cmd);
     TCLAP::ValueArg<std::string> output(
-        "o", "output", "Folder for the results", true, "", "OUT/", cmd);
+        "o", "output", "Folder for the results (default: named after the recording, with _taut)",
+        false, "", "OUT/", cmd);
     TCLAP::ValueArg<std::string> config(
         "c", "config", "Method file: the choices of the method (default: config/default.yaml)",
         false, "", "METHOD.yaml", cmd);
@@ -97,22 +129,26 @@ bool parseOptions(int argc, char** argv, Options& o)
         "", "truth", "True trajectory (TUM file) that report.html compares the run with", false, "",
         "GT.tum", cmd);
     TCLAP::SwitchArg show(
-        "", "show-config", "Print the configuration in effect and end; needs neither -i nor -o",
-        cmd);
+        "", "show-config", "Print the configuration in effect and end; needs no recording", cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "Errors only: as -v ERROR", cmd);
     TCLAP::ValueArg<std::string> level(
         "v", "verbosity", "How much is told (default INFO)", false, "INFO", "ERROR|WARN|INFO|DEBUG",
         cmd);
     const Usage usage{
-        {"-i rawlogs/hall_fast.rawlog -o out/hall_fast",
+        {"rawlogs/hall_fast.rawlog -o out/hall_fast", "drive.bag",
+         "drive.mcap -o out/drive --lidar-topic /points --imu-topic /imu/data",
          "-i LOG.rawlog -o out/paper -c config/paper.yaml --threads 2",
          "-i TODAY.rawlog -o out/today -m out/yesterday",
          "-i TODAY.rawlog -o out/both -m out/yesterday --extend"},
-        &show};
+        &show,
+        {&recording}};
     if (!parseCommandLine(cmd, argc, argv, usage)) return false;
 
-    o.input = input.getValue();
-    o.output = output.getValue();
+    o.show_config = show.getValue();
+    const std::string path = recordingOf(recording, input, o.show_config);
+    o.log = log.log(path);
+    o.log.only_first_n = first.getValue();
+    o.output = output.getValue().empty() ? folderFor(path) : output.getValue();
     o.config = config.getValue();
     o.settings = set.getValue();
     o.rig = log.rig();
@@ -120,12 +156,6 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.extend_map = extend.getValue();
     if (!start.getValue().empty()) o.start_at = startOf(start.getValue());
     requireMapFor(o, localize.getValue());
-    o.lidar_label = log.lidarLabel();
-    o.imu_label = log.imuLabel();
-    o.from_time = log.fromTime();
-    o.to_time = log.toTime();
-    o.scan_times = log.scanTimes();
-    o.only_first_n = first.getValue();
     o.plugins = plugins.getValue();
     o.threads = threadsOf(threads.getValue());
     o.overwrite = overwrite.getValue();
@@ -134,9 +164,8 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.truth = truth.getValue();
     if (o.no_report && !o.truth.empty())
         throw UsageError("--truth is for report.html, which --no-report leaves out");
-    o.show_config = show.getValue();
     o.verbosity = quiet.getValue() ? 0 : verbosityOf(level.getValue());
-    if (o.only_first_n < 0) throw UsageError("--only-first-n must not be negative");
+    if (o.log.only_first_n < 0) throw UsageError("--only-first-n must not be negative");
     return true;
 }
 }  // namespace taut

@@ -1,28 +1,23 @@
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
-#include "taut/completion/TurnFinder.h"
+#include "taut/rawlog/RawlogSource.h"
 
 namespace taut
 {
 /** What the command line says. */
 struct Options
 {
-    std::string input, output;
+    RawlogConfig log;  //!< of the recording, whatever its format
+    std::string output;
     std::string config;                 //!< method file; empty: config/default.yaml
     std::vector<std::string> settings;  //!< section.key=value, over the method file
     std::string rig;
-    std::string map;                     //!< results of an earlier run; empty: none
-    bool extend_map = false;             //!< its submaps may move and belong to the results
-    std::vector<double> start_at;        //!< x, y, z [m], yaw [rad] in that map; empty: not known
-    std::string lidar_label, imu_label;  //!< regular expressions; empty: the only sensor there
-    double from_time = 0,
-           to_time = std::numeric_limits<double>::infinity();  //!< [s] from the start
-    ScanTimes scan_times = ScanTimes::Auto;                    //!< of scans without times
-    int only_first_n = 0;                                      //!< scans; 0: all
+    std::string map;               //!< results of an earlier run; empty: none
+    bool extend_map = false;       //!< its submaps may move and belong to the results
+    std::vector<double> start_at;  //!< x, y, z [m], yaw [rad] in that map; empty: not known
     std::vector<std::string> plugins;
     int threads = 0;    //!< 0: as many as the machine has
     std::string truth;  //!< trajectory that report.html compares the run with; empty: none

@@ -36,20 +36,6 @@ void loadPlugins(const std::vector<std::string>& plugins)
     }
 }
 
-RawlogConfig rawlogConfig(const Options& o, const Rig& rig)
-{
-    RawlogConfig c;
-    c.path = o.input;
-    c.lidar_label = o.lidar_label;
-    c.imu_label = o.imu_label;
-    c.from_time = o.from_time;
-    c.to_time = o.to_time;
-    c.only_first_n = o.only_first_n;
-    c.rig = rig;
-    c.scan_times = o.scan_times;
-    return c;
-}
-
 KnownMap knownMap(const Options& o)
 {
     if (!fs::is_directory(o.map)) throw std::runtime_error("'" + o.map + "' is not a folder");
@@ -66,9 +52,12 @@ void makeFolder(const Options& o)
 {
     if (!o.map.empty() && fs::exists(o.output) && fs::equivalent(o.map, o.output))
         throw UsageError("-o is the folder of -m: the map would be overwritten");
+    if (fs::is_directory(o.log.path) && fs::exists(o.output) &&
+        fs::equivalent(o.log.path, o.output))
+        throw UsageError("the results would be mixed with the recording: choose another folder");
     try
     {
-        prepareResultFolder(o.output, o.overwrite, {o.input, o.config, o.rig, o.truth});
+        prepareResultFolder(o.output, o.overwrite, {o.log.path, o.config, o.rig, o.truth});
     }
     catch (const FolderInUse& e)
     {
@@ -76,7 +65,7 @@ void makeFolder(const Options& o)
     }
 }
 
-/** One run of the program: from a rawlog to a folder of results. */
+/** One run of the program: from a recording to a folder of results. */
 class Run
 {
  public:
@@ -86,16 +75,12 @@ class Run
           second_pass_(options.verbosity >= 2),
           warnings_([this](const Warning& w) { print(w); })
     {
-        if (!options.rig.empty())
-        {
-            session_.rig = readTextFile(options.rig);
-            rig_ = parseRig(session_.rig, options.rig);
-        }
+        if (!options.rig.empty()) session_.rig = readTextFile(options.rig);
         session_.method_file = findMethodFile(options.config);
         ConfigSection root = readMethodFile(session_.method_file, options.settings);
-        session_.method = Method::read(root, rig_.imu.noise);
+        session_.method = Method::read(root, options.log.rig.imu.noise);
         session_.folder = options.output;
-        session_.input = options.input;
+        session_.input = options.log.path;
         session_.threads = options.threads;
         if (!options.map.empty()) session_.known_map = knownMap(options);
         session_.pictures = !options.no_pictures;
@@ -113,7 +98,7 @@ class Run
         }
         if (session_.known_map && !session_.method.slam.loops)
             throw UsageError("-m needs loops: slam.loops is false");
-        PrefetchedRawlog log(rawlogConfig(options_, rig_), warnings_.sink());
+        PrefetchedRawlog log(options_.log, warnings_.sink());
         makeFolder(options_);
         Session session(session_, warnings_, [this](const Event& e) { describe(e); });
         const SessionOutcome outcome = session.run(
@@ -126,10 +111,10 @@ class Run
                     progress_.update(share, session.scans(), session.duration());
                 return !interrupted;
             },
-            [&] { return std::make_unique<PrefetchedRawlog>(rawlogConfig(options_, rig_)); });
+            [&] { return std::make_unique<PrefetchedRawlog>(options_.log); });
         progress_.clear();
         second_pass_.clear();
-        report(outcome);
+        report(outcome, log.progress().findings);
         if (!outcome.failure.empty())
             throw std::runtime_error(outcome.failure + "; what was done before is saved");
         if (outcome.poses == 0) throw std::runtime_error("no scan could be used");
@@ -159,12 +144,14 @@ class Run
             r.report.iterations, r.report.times.total());
     }
 
-    void report(const SessionOutcome& o) const
+    /** `findings`: about the recording, if it had to be imported. */
+    void report(const SessionOutcome& o, const std::vector<std::string>& findings) const
     {
         if (options_.verbosity < 1) return;
         if (o.interrupted) std::fprintf(stderr, "interrupted: what was done is saved\n");
         std::cerr << warnings_.summaryOfRest();
         if (options_.verbosity < 2) return;
+        for (const std::string& finding : findings) std::printf("%s\n", finding.c_str());
         const bool pictures = session_.pictures && o.poses > 0 && !o.pictures_failed;
         const bool page = session_.report && !o.report_failed;
         std::printf(
@@ -182,7 +169,6 @@ class Run
     }
 
     const Options& options_;
-    Rig rig_;
     SessionConfig session_;
     Progress progress_, second_pass_;
     WarningLog warnings_;

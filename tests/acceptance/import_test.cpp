@@ -132,6 +132,79 @@ TEST(AnImport, OfCloudsWithoutTimesTakesThemFromTheAzimuth)
     EXPECT_EQ(import(arguments + " --scan-times never").exit_code, 2);
 }
 
+// One command instead of two, to the bit.
+TEST(ARecordingOfAnotherFormat, IsRunAsTheRawlogThatAnImportMakesOfIt)
+{
+    const TemporaryFolder folder;
+    const std::string in = folder / "in", log = folder / "log.rawlog", rig = folder / "rig.yaml";
+    writeFolder(in, 6);
+    writeRig(rig);
+    std::ofstream(rig, std::ios::app) << "imu: {pose: {x: 0.25, yaw: 90}}\n";
+    ASSERT_EQ(import(in + " -o " + log + " -r " + rig).exit_code, 0);
+    const std::string part = "--from-time 1 --only-first-n 20";
+    ASSERT_EQ(slam(log, folder / "two", part).exit_code, 0);
+    const ProgramRun run = slam(in, folder / "one", part + " -r " + rig);
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    for (const char* file : {"/trajectory.tum", "/map.ply", "/states.csv"})
+        EXPECT_TRUE(contentOf(folder / "one" + file) == contentOf(folder / "two" + file)) << file;
+    EXPECT_THAT(run.output, HasSubstr("LiDAR 'LIDAR': "));
+    EXPECT_THAT(run.output, HasSubstr("rates in deg/s, converted"));
+    const std::string metrics = contentOf(folder / "one/metrics.json");
+    EXPECT_THAT(metrics, HasSubstr("specific force in g, converted"));
+    EXPECT_THAT(metrics, HasSubstr("\"sha256\": null"));
+    for (const auto& file : fs::directory_iterator(folder / "one"))
+        EXPECT_NE(file.path().extension(), ".rawlog") << file.path();
+}
+
+TEST(ARecordingOfAnotherFormat, NamesTheFolderOfTheResults)
+{
+    const TemporaryFolder folder;
+    writeFolder(folder / "hall.1", 1);
+    fs::create_directories(folder / "work");
+    const std::string slam_there = "cd " + (folder / "work") + " && " TAUT_SLAM;
+    const auto run = [&](const std::string& arguments)
+    { return runProgram(slam_there, arguments + " -q --no-pictures --no-report --threads 1"); };
+    EXPECT_EQ(run("../hall.1/").exit_code, 0);
+    EXPECT_TRUE(fs::exists(folder / "work/hall.1_taut/trajectory.tum"));
+    const ProgramRun again = run("../hall.1");
+    EXPECT_EQ(again.exit_code, 2);
+    EXPECT_THAT(again.output, HasSubstr("'hall.1_taut' holds results already; -w overwrites"));
+    EXPECT_EQ(run("--only-first-n 5 -i " + kSample).exit_code, 0);
+    EXPECT_TRUE(fs::exists(folder / "work/hall_fast_taut/trajectory.tum"));
+}
+
+TEST(ARecordingOfAnotherFormat, ThatLacksAPartGivesThreeAndTheRest)
+{
+    const TemporaryFolder folder;
+    const std::string in = folder / "in";
+    writeFolder(in, 1);
+    std::ofstream(in + "/9999999999.000000000.ply") << "ply\nno more";
+    const ProgramRun run = slam(in, folder / "out");
+    EXPECT_EQ(run.exit_code, 3) << run.output;
+    EXPECT_THAT(run.output, HasSubstr("warning [scan_invalid]"));
+    EXPECT_THAT(contentOf(folder / "out/metrics.json"), HasSubstr("\"skipped_observations\": 1"));
+}
+
+TEST(ARecordingOfAnotherFormat, HasOptionsThatARawlogHasNot)
+{
+    const TemporaryFolder folder;
+    const std::string in = folder / "in", out = folder / "out";
+    writeFolder(in, 0.5);
+    const auto says = [](const std::string& log, const std::string& to, const std::string& more)
+    {
+        const ProgramRun run = slam(log, to, more);
+        EXPECT_EQ(run.exit_code, 2) << run.output;
+        return run.output;
+    };
+    EXPECT_THAT(says(kSample, out, "--imu-topic /imu"), HasSubstr("--imu-topic is for captures"));
+    EXPECT_THAT(says(in, out, "--imu XSENS"), HasSubstr("in a bag --lidar-topic and --imu-topic"));
+    EXPECT_THAT(says(in, out, "--scan-stamp middle"), HasSubstr("--scan-stamp is start or end"));
+    EXPECT_THAT(says(in, in, "-w"), HasSubstr("choose another folder"));
+    EXPECT_FALSE(fs::exists(out));
+    EXPECT_FALSE(fs::exists(in + "/trajectory.tum"));
+    EXPECT_EQ(slam(folder / "absent.bag", out, "--imu-topic /imu").exit_code, 1);
+}
+
 TEST(AnImport, IsRefusedWithOneLineAndLeavesNothing)
 {
     const TemporaryFolder folder;

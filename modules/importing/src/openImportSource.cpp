@@ -17,6 +17,13 @@ namespace
 {
 constexpr std::size_t kHeadBytes = 64;
 
+const ImportFormat* formatOf(const Recording& recording)
+{
+    for (const ImportFormat& format : importFormats())
+        if (format.matches(recording)) return &format;
+    return nullptr;
+}
+
 Recording look(const std::string& path)
 {
     Recording recording;
@@ -35,6 +42,21 @@ Recording look(const std::string& path)
 }
 }  // namespace
 
+bool canBeImported(const std::string& path)
+{
+    std::error_code error;
+    // A look at anything else (a pipe) would take from it.
+    if (!fs::is_directory(path, error) && !fs::is_regular_file(path, error)) return false;
+    try
+    {
+        return formatOf(look(path)) != nullptr;
+    }
+    catch (const std::runtime_error&)  // whoever reads it tells why
+    {
+        return false;
+    }
+}
+
 std::unique_ptr<ImportSource> openImportSource(
     const std::string& path, const ImportOptions& options, const WarningSink& sink)
 {
@@ -45,18 +67,16 @@ std::unique_ptr<ImportSource> openImportSource(
         const bool again = w.kind == "clock_offset" && std::exchange(*told, true);
         if (sink && !again) sink(w);
     };
+    if (const ImportFormat* format = formatOf(recording))
+    {
+        const auto open = [&](const WarningSink& to)
+        { return format->open(recording, options, to); };
+        return std::make_unique<CheckedSource>(
+            path, std::make_unique<CompletedSource>(open, options, warn), options, warn);
+    }
     std::string known;
     for (const ImportFormat& format : importFormats())
-    {
-        if (format.matches(recording))
-        {
-            const auto open = [&](const WarningSink& sink)
-            { return format.open(recording, options, sink); };
-            return std::make_unique<CheckedSource>(
-                path, std::make_unique<CompletedSource>(open, options, warn), options, warn);
-        }
         known += std::string(known.empty() ? "" : ", ") + format.name;
-    }
     throw std::runtime_error("'" + path + "' is no recording that can be imported: " + known);
 }
 }  // namespace taut

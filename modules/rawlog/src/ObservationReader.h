@@ -1,28 +1,18 @@
 #pragma once
 
-#include <mrpt/obs/CObservation.h>
-
 #include <cstdint>
 #include <optional>
 #include <string>
 
+#include "EntrySource.h"
 #include "GzInput.h"
 #include "ObjectHeader.h"
 
 namespace taut
 {
-/** An observation of a rawlog. */
-struct LogEntry
-{
-    std::string class_name;  //!< without namespaces
-    std::string label;       //!< valid UTF-8; of a class that taut does not use it may be empty
-    mrpt::obs::CObservation::Ptr observation;  //!< null unless it is of a LiDAR or an IMU
-    std::size_t bytes = 0;                     //!< of the observation in the file, if not null
-};
-
 /** Gives the observations of a rawlog one by one, whichever of the two formats it has. Memory is
  * bounded by what the file holds and by the size of a scan, whatever sizes are written in it. */
-class ObservationReader
+class ObservationReader : public EntrySource
 {
  public:
     /** Throws std::runtime_error naming the file if it is missing, empty or no rawlog. */
@@ -30,13 +20,13 @@ class ObservationReader
 
     /** The next one in the order of the file; none at the end or where the file cannot be read on.
      */
-    std::optional<LogEntry> next();
+    std::optional<LogEntry> next() override;
 
     /** Why the reading stopped before the end of the log; empty if it did not. */
-    const std::string& damage() const { return damage_; }
+    std::string damage() const override { return damage_; }
 
-    std::uint64_t bytesRead() const { return input_.compressedPosition(); }
-    std::uint64_t bytesTotal() const { return input_.compressedSize(); }
+    std::uint64_t bytesRead() const override { return input_.compressedPosition(); }
+    std::uint64_t bytesTotal() const override { return input_.compressedSize(); }
 
  private:
     std::optional<LogEntry> read();

@@ -68,7 +68,7 @@ struct RawlogSource::Impl
     Impl(const RawlogConfig& c, WarningSink w)
         : config(c),
           sink(std::move(w)),
-          reader(c.path),
+          reader(openEntries(c, sink)),
           lidar("LiDAR", "--lidar", firstGiven(c.lidar_label, c.rig.lidar.label)),
           imu("IMU", "--imu", firstGiven(c.imu_label, c.rig.imu.label))
     {
@@ -122,7 +122,7 @@ struct RawlogSource::Impl
  public:
     RawlogConfig config;
     WarningSink sink;
-    ObservationReader reader;
+    std::unique_ptr<EntrySource> reader;
     SensorChoice lidar, imu;
     StreamProgress progress;
 
@@ -131,6 +131,7 @@ struct RawlogSource::Impl
     std::map<std::size_t, CObservation::Ptr> ahead;  // by its id there
     std::deque<Judged> judged_already;               // up to the first with a good stamp
     std::size_t bytes_ahead = 0;
+    std::size_t left_out = 0;    // by the reader, in progress.skipped already
     std::exception_ptr failure;  // of the reading: told when what was read before is given out
     std::optional<Pose> T_imu_vehicle;
     ImuUnitCheck unit_check;
@@ -218,9 +219,11 @@ std::optional<LogEntry> RawlogSource::Impl::read()
 {
     for (;;)
     {
-        auto entry = reader.next();
-        progress.bytes_read = reader.bytesRead();
-        progress.bytes_total = reader.bytesTotal();
+        auto entry = reader->next();
+        progress.bytes_read = reader->bytesRead();
+        progress.bytes_total = reader->bytesTotal();
+        progress.skipped += reader->leftOut() - left_out;
+        left_out = reader->leftOut();
         if (entry) account(*entry);
         if (!entry || entry->observation) return entry;
     }
@@ -286,12 +289,13 @@ std::optional<Measurement> RawlogSource::Impl::next()
 void RawlogSource::Impl::finish()
 {
     finished = true;
+    progress.findings = reader->findings();
     if (failure) std::rethrow_exception(failure);
-    if (!reader.damage().empty())
+    if (!reader->damage().empty())
         warn(
             progress.now, "rawlog_truncated",
             "'" + config.path + "' cannot be read on after " +
-                seconds(progress.now - progress.first) + " of log: " + reader.damage());
+                seconds(progress.now - progress.first) + " of log: " + reader->damage());
     if (!lidar.chosen())
     {
         std::string found;
@@ -560,6 +564,6 @@ StreamProgress RawlogSource::progress() const
 
 bool RawlogSource::incomplete() const
 {
-    return !impl_->reader.damage().empty();
+    return !impl_->reader->damage().empty();
 }
 }  // namespace taut

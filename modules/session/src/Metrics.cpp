@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -30,6 +31,14 @@ std::string sha256(const std::string& path)
     for (unsigned i = 0; i < size; i++)
         hex << "0123456789abcdef"[digest[i] >> 4] << "0123456789abcdef"[digest[i] & 15];
     return hex.str();
+}
+
+/** Nothing for a folder. */
+nlohmann::ordered_json fingerprint(const std::string& path)
+{
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) return nullptr;
+    return sha256(path);
 }
 
 double megabytes(std::size_t kilobytes)
@@ -89,7 +98,7 @@ std::string Metrics::json(const Summary& s, const WarningLog& warnings) const
     j["program"] = {{"name", "taut-slam"}, {"version", TAUT_VERSION}};
     j["input"] = {
         {"file", input_},
-        {"sha256", sha256(input_)},
+        {"sha256", fingerprint(input_)},
         {"bytes", s.log.bytes_total},
         {"duration_s", log_span},
         {"scans", s.log.scans},
@@ -100,6 +109,7 @@ std::string Metrics::json(const Summary& s, const WarningLog& warnings) const
         {"incomplete", s.incomplete},
         {"lidar_label", s.log.lidar_label},
         {"imu_label", s.log.imu_label}};
+    if (!s.log.findings.empty()) j["input"]["import"] = s.log.findings;
     j["method"] = {
         {"file", s.method_file},
         {"undistortion", s.mode},

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "taut/core/Imu.h"
 #include "taut/core/Scan.h"
@@ -31,6 +32,9 @@ struct StreamProgress
     /** Observations by label and MRPT class, of all sensors, used or not. The label of one that is
      * neither LiDAR nor IMU may be empty. Labels are valid UTF-8, as everywhere here. */
     std::map<std::pair<std::string, std::string>, std::size_t> sensors;
+    /** Of a recording of another format, at its end: what was found out about it and used (rates,
+     * topics, units, poses), one line each. */
+    std::vector<std::string> findings;
 
     /** 0 to 1, of the file: for a bar. */
     double fraction() const

@@ -17,4 +17,7 @@ namespace taut
  * not tell, and said in the findings), finite, and of each sensor in the order of time. */
 std::unique_ptr<ImportSource> openImportSource(
     const std::string& path, const ImportOptions& options = {}, const WarningSink& warn = {});
+
+/** True if there is a file or folder of such a format; a rawlog is none. */
+bool canBeImported(const std::string& path);
 }  // namespace taut

@@ -8,6 +8,7 @@
 #include "taut/completion/TurnFinder.h"
 #include "taut/core/Measurement.h"
 #include "taut/core/Warning.h"
+#include "taut/rawlog/ItemSource.h"
 #include "taut/rawlog/Rig.h"
 
 namespace taut
@@ -24,13 +25,17 @@ struct RawlogConfig
     int only_first_n = 0;  //!< end after that many scans; 0 = all
     Rig rig;               //!< what overrides the poses, units and clocks of the log
     ScanTimes scan_times = ScanTimes::Auto;  //!< for scans without times of their points
+    /** Opens `path` where it is a recording of another format; empty: it is a rawlog. Then the
+     * measurements are those of the rawlog that an import of it would write. */
+    OpenItems open;
 };
 
 /** Whether a file begins with an object of a rawlog, gz or plain. */
 bool isRawlog(const std::string& path);
 
 /** Streams the measurements of one LiDAR and one IMU out of a rawlog (observation or sensory-frame
- * format, gz or plain), in the order of the file, with memory bounded by about 3 s of it.
+ * format, gz or plain; or what RawlogConfig::open gives), in the order of the file, with memory
+ * bounded by about 3 s of it.
  *
  * The body is the IMU: T_imu_lidar = T_vehicle_imu^-1 T_vehicle_lidar from the sensors' poses in
  * the log (or the rig). Without an IMU the body is the vehicle.
