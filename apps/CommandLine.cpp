@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -140,6 +141,23 @@ void rejectUnknownOptions(const std::vector<std::string>& words, const Arguments
     }
 }
 
+std::string quotedForShell(const std::string& word)
+{
+    const bool plain =
+        !word.empty() &&
+        std::all_of(
+            word.begin(), word.end(),
+            [](unsigned char c)
+            {
+                return std::isalnum(c) != 0 ||
+                       std::string("_./:=,@%+-").find(static_cast<char>(c)) != std::string::npos;
+            });
+    if (plain) return word;
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string{c};
+    return quoted + "'";
+}
+
 /** As the table of the program tells it. What TCLAP adds itself is told in taut's words. */
 TableEntry entryOf(TCLAP::Arg& arg)
 {
@@ -265,6 +283,22 @@ bool parseCommandLine(TCLAP::CmdLine& cmd, int argc, char** argv, const Usage& u
     const std::unique_ptr<TCLAP::CmdLineOutput> replaced(cmd.getOutput());  // TCLAP would leak it
     cmd.setOutput(&output);
     return cmd.parse(argc, argv) || output.complete();
+}
+
+std::string commandLineWith(
+    const std::vector<std::string>& words, const std::string& option, const std::string& value)
+{
+    std::vector<std::string> changed;
+    for (std::size_t i = 0; i < words.size(); i++)
+        if (words[i] == option)
+            i++;  // its value
+        else
+            changed.push_back(words[i]);
+    changed.insert(changed.end(), {option, value});
+    std::string line;
+    for (const std::string& word : changed)
+        line += (line.empty() ? "" : " ") + quotedForShell(word);
+    return line;
 }
 
 int threadsOf(int asked)

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "taut/core/ChoiceNeeded.h"
 #include "taut/core/Yaml.h"
 
 namespace taut
@@ -45,10 +46,16 @@ void guardStandardStreams();
  * written. */
 bool flushStandardOutput();
 
+/** The command line that was given, with one more option or another value of it, to be copied into
+ * a shell. */
+std::string commandLineWith(
+    const std::vector<std::string>& words, const std::string& option, const std::string& value);
+
 /** Calls `body` and gives the exit code: what it returns (0 if nothing), 1 failed, 2 bad usage or a
- * configuration that cannot be used. An output that could not be written is a failure. */
+ * configuration that cannot be used. An output that could not be written is a failure. `words` is
+ * the command line, for the advice how to change it. */
 template <class Body>
-int runProgram(const std::string& name, Body body)
+int runProgram(const std::string& name, Body body, const std::vector<std::string>& words = {})
 {
     guardStandardStreams();
     try
@@ -70,6 +77,17 @@ int runProgram(const std::string& name, Body body)
     {
         std::cerr << name << ": " << e.what() << "\n";
         return 2;
+    }
+    catch (const ChoiceNeeded& e)
+    {
+        std::cerr << name << ": ";
+        if (words.empty())
+            std::cerr << e.what() << "\n";
+        else
+            std::cerr << e.text()
+                      << "; choose one, as in: " << commandLineWith(words, e.option(), e.value())
+                      << "\n";
+        return 1;
     }
     catch (const std::exception& e)
     {

@@ -86,5 +86,6 @@ int main(int argc, char** argv)
         {
             const auto options = parse(argc, argv);
             return options ? run(*options) : 0;
-        });
+        },
+        {argv, argv + argc});
 }

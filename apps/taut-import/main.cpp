@@ -105,5 +105,6 @@ int run(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    return taut::runProgram("taut-import", [&] { return taut::run(argc, argv); });
+    return taut::runProgram(
+        "taut-import", [&] { return taut::run(argc, argv); }, {argv, argv + argc});
 }

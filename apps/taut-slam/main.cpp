@@ -1,5 +1,6 @@
 #include <mrpt/system/os.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include "../methodFile.h"
 #include "Options.h"
 #include "taut/core/Plugins.h"
+#include "taut/inspection/Inspection.h"
 #include "taut/rawlog/PrefetchedRawlog.h"
 #include "taut/render/OSMesaRenderer.h"
 #include "taut/session/ResultFolder.h"
@@ -100,6 +102,7 @@ class Run
             throw UsageError("-m needs loops: slam.loops is false");
         PrefetchedRawlog log(options_.log, warnings_.sink());
         makeFolder(options_);
+        if (!log.progress().pose_told && log.progress().has_imu) checkPose();
         Session session(session_, warnings_, [this](const Event& e) { describe(e); });
         const SessionOutcome outcome = session.run(
             log,
@@ -123,6 +126,38 @@ class Run
     }
 
  private:
+    /** Nothing tells the pose of the LiDAR: whether the identity fits, by the begin of the
+     * recording. */
+    void checkPose()
+    {
+        constexpr double kLooked = 60;  // [s]
+        if (options_.verbosity >= 2)
+            std::fprintf(
+                stderr,
+                "the recording does not tell the pose of its LiDAR: checking the identity\n");
+        InspectionConfig config;
+        config.log = options_.log;
+        config.log.only_first_n = 0;
+        config.log.to_time = std::min(config.log.to_time, config.log.from_time + kLooked);
+        Executor executor(options_.threads);
+        Findings findings;
+        try
+        {
+            findings = inspectRecording(config, executor).findings;
+        }
+        catch (const std::exception&)
+        {
+            // Nothing can be read there: the run itself tells it.
+        }
+        for (const Finding& finding : findings)
+            if (finding.kind == "extrinsic_rotation")
+                warnings_.add(
+                    {finding.t, finding.kind,
+                     "nothing tells the pose of the LiDAR on the IMU, and it is not the "
+                     "identity: " +
+                         finding.text + "; " + finding.advice});
+    }
+
     void print(const Warning& w)
     {
         if (options_.verbosity < 1) return;
@@ -189,5 +224,6 @@ int run(int argc, char** argv)
 
 int main(int argc, char** argv)
 {
-    return taut::runProgram("taut-slam", [&] { return taut::run(argc, argv); });
+    return taut::runProgram(
+        "taut-slam", [&] { return taut::run(argc, argv); }, {argv, argv + argc});
 }

@@ -46,7 +46,7 @@ class OusterSimulator
 
     Time columnTime(int frame, int column) const
     {
-        return device_start + frame * (1'000'000'000 / rate) + column * columnPeriod();
+        return device_start + frame * Duration{1'000'000'000 / rate} + column * columnPeriod();
     }
 
     nlohmann::json description() const

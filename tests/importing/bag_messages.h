@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "taut/core/Geometry.h"
 #include "taut/core/Imu.h"
 #include "taut/core/Scan.h"
 
@@ -78,10 +79,11 @@ class WireWriter
     Blob body_;
 };
 
-inline Blob imuMessage(const ImuSample& sample, TestWire wire)
+inline Blob imuMessage(
+    const ImuSample& sample, TestWire wire, const std::string& frame = "os_lidar")
 {
     WireWriter out(wire);
-    out.header(sample.t);
+    out.header(sample.t, frame);
     for (int i = 0; i < 4 + 9; i++) out.number(0.25 * i);
     for (int i = 0; i < 3; i++) out.number(sample.gyro[i]);
     for (int i = 0; i < 9; i++) out.number(-0.5);
@@ -90,9 +92,39 @@ inline Blob imuMessage(const ImuSample& sample, TestWire wire)
     return out.message();
 }
 
+/** One transform of a tf2_msgs/TFMessage. */
+struct TestTransform
+{
+    std::string parent, child;
+    Vector3d translation = Vector3d::Zero();
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+};
+
+inline TestTransform transformOf(
+    const std::string& parent, const std::string& child, const Pose& T_parent_child)
+{
+    return {parent, child, T_parent_child.p, Eigen::Quaterniond(T_parent_child.R)};
+}
+
+inline Blob transformsMessage(const std::vector<TestTransform>& transforms, TestWire wire)
+{
+    WireWriter out(wire);
+    out.number(static_cast<std::uint32_t>(transforms.size()));
+    for (const TestTransform& t : transforms)
+    {
+        out.header(1'700'000'000'000'000'000, t.parent);
+        out.text(t.child);
+        for (int i = 0; i < 3; i++) out.number(t.translation[i]);
+        for (const double value : {t.rotation.x(), t.rotation.y(), t.rotation.z(), t.rotation.w()})
+            out.number(value);
+    }
+    return out.message();
+}
+
 /** How a driver writes its clouds. */
 struct CloudStyle
 {
+    std::string frame = "os_lidar";
     std::string time_name = "t", time_type = "uint32";
     double time_unit = 1;      //!< [ns]
     bool absolute = false;     //!< times since 1970, else since the stamp

@@ -156,7 +156,7 @@ TEST_F(AnOusterBag, WithASecondImuAsksWhich)
 {
     const std::string path =
         write(merged(all(), readingMessages(syntheticReadings(3), TestWire::Cdr)));
-    EXPECT_THAT(failure(path), HasSubstr("--imu-topic chooses"));
+    EXPECT_THAT(failure(path), HasSubstr("; choose one with --imu-topic /os/imu_packets"));
     ImportOptions options;
     options.imu_topic = kImuTopic;
     const Imported got = import(path, options);

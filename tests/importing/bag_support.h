@@ -65,12 +65,13 @@ inline TestMessages sweepMessages(
     return messages;
 }
 
-inline TestMessages readingMessages(const ImuSamples& samples, TestWire wire)
+inline TestMessages readingMessages(
+    const ImuSamples& samples, TestWire wire, const std::string& frame = "os_lidar")
 {
     TestMessages messages;
     for (const ImuSample& sample : samples)
         messages.push_back(
-            {kImuTopic, "sensor_msgs/Imu", sample.t + 1'000'000, imuMessage(sample, wire)});
+            {kImuTopic, "sensor_msgs/Imu", sample.t + 1'000'000, imuMessage(sample, wire, frame)});
     return messages;
 }
 

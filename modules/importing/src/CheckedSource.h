@@ -32,6 +32,7 @@ class CheckedSource : public ImportSource
     std::optional<ImportedItem> next() override;
     double progress() const override { return source_->progress(); }
     std::vector<std::string> findings() const override;
+    bool tellsPose() const override { return source_->tellsPose(); }
 
  private:
     std::optional<ImportedItem> nextInOrder();

@@ -28,6 +28,7 @@ class CompletedSource : public ImportSource
     std::optional<ImportedItem> next() override;
     double progress() const override { return source_->progress(); }
     std::vector<std::string> findings() const override;
+    bool tellsPose() const override { return source_->tellsPose(); }
 
  private:
     void judgeStamp(

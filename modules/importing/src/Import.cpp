@@ -41,6 +41,7 @@ ImportOptions optionsOf(const ImportConfig& config, const Rig& rig)
     ImportOptions options = config.options;
     if (rig.imu.accel_scale != 1) options.accel_scale = rig.imu.accel_scale;
     if (rig.lidar.clock_offset != 0) options.lidar_clock_offset = rig.lidar.clock_offset;
+    options.pose_given = rig.lidar.T_vehicle_lidar.has_value();
     if (rig.imu.gyro_scale != 1) options.gyro_scale = rig.imu.gyro_scale;
     return options;
 }
@@ -113,7 +114,13 @@ std::vector<std::string> Import::findings() const
         "LiDAR '" + impl_->config.lidar_label + "': " + impl_->scans.text(),
         "IMU '" + impl_->config.imu_label + "': " + impl_->samples.text()};
     for (std::string& finding : impl_->source->findings()) lines.push_back(std::move(finding));
+    if (impl_->T_imu_lidar) lines.emplace_back("T_imu_lidar: of the rig file");
     return lines;
+}
+
+bool Import::tellsPose() const
+{
+    return impl_->T_imu_lidar || impl_->source->tellsPose();
 }
 
 std::size_t Import::leftOut() const

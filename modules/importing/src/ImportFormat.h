@@ -28,6 +28,11 @@ struct ImportFormat
         const Recording& recording, const ImportOptions& options, const WarningSink& warn);
 };
 
+/** For the summary of a recording with an IMU that does not tell the pose of its LiDAR. */
+inline constexpr const char* kPoseNotTold =
+    "T_imu_lidar: not told, so the LiDAR is taken to be where the IMU is, with its axes (a rig "
+    "file tells it)";
+
 /** Every format, the most specific first. */
 const std::vector<ImportFormat>& importFormats();
 }  // namespace taut

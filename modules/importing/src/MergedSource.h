@@ -19,6 +19,7 @@ struct SensorStreams
     std::vector<std::string> findings;
     bool undistorted = false;  //!< somebody undistorted the scans, as is known
     std::function<std::vector<std::string>()> later_findings;  //!< complete at the end; or empty
+    bool tells_pose = true;  //!< as ItemSource::tellsPose()
 };
 
 /** Brings the streams of two sensors into the order of time: a scan when it has ended, as a
@@ -33,6 +34,7 @@ class MergedSource : public ImportSource
     double progress() const override { return streams_.progress(); }
     std::vector<std::string> findings() const override;
     bool isUndistorted() const override { return streams_.undistorted; }
+    bool tellsPose() const override { return streams_.tells_pose; }
 
  private:
     void checkEnd();

@@ -19,6 +19,8 @@ std::string asText(const StreamProgress& log)
         out += format(
             "  %-20s %-28s %8zu\n", ("'" + sensor.first + "'").c_str(), sensor.second.c_str(),
             observations);
+    if (!log.findings.empty()) out += "import\n";
+    for (const std::string& line : log.findings) out += "  " + line + "\n";
     return out;
 }
 
@@ -204,6 +206,7 @@ std::string inspectionAsJson(const Inspection& i)
         {"bytes", i.log.bytes_total},
         {"incomplete", i.incomplete}};
     out["sensors"] = asJson(i.log);
+    if (!i.log.findings.empty()) out["import"] = i.log.findings;
     out["lidar"] = i.lidar ? asJson(*i.lidar, i.log.lidar_label) : Json();
     out["imu"] = i.imu ? asJson(*i.imu, i.log.imu_label) : Json();
     out["rotation"] = i.rotation ? asJson(*i.rotation) : Json();

@@ -1,11 +1,20 @@
 #include "LogFindings.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "taut/core/format.h"
 
 namespace taut
 {
 namespace
 {
+/** Warnings of the import of a recording that is no rawlog. */
+constexpr const char* kOfImport[] = {
+    "bag_damaged",    "bag_file_missing", "bag_truncated",   "bag_unindexed", "fragments_lost",
+    "no_calibration", "packet_invalid",   "message_invalid", "packets_late",  "pcap_cut",
+    "pcap_truncated", "pose_unknown",     "scan_stamp",      "second_sensor", "tf_invalid"};
+
 /** What to do about a kind of warning; empty for kinds that are found in a better way elsewhere. */
 std::string adviceFor(const std::string& kind)
 {
@@ -47,7 +56,10 @@ std::string adviceFor(const std::string& kind)
         {"rig_unused", "correct the label in the rig file"},
         {"imu_not_found", "correct the label"}};
     const auto it = advice.find(kind);
-    return it == advice.end() ? "" : it->second;
+    if (it != advice.end()) return it->second;
+    const bool of_import =
+        std::find(std::begin(kOfImport), std::end(kOfImport), kind) != std::end(kOfImport);
+    return of_import ? "see docs/warnings.md, taut-import" : "";
 }
 
 Finding pointFinding(

@@ -67,6 +67,7 @@ class ItemEntries : public EntrySource
     std::uint64_t bytesTotal() const override { return bytes_; }
     std::size_t leftOut() const override { return items_->leftOut(); }
     std::vector<std::string> findings() const override { return items_->findings(); }
+    bool tellsPose() const override { return items_->tellsPose(); }
 
  private:
     template <class Item>

@@ -37,9 +37,10 @@ class EntrySource
     virtual std::uint64_t bytesRead() const = 0;
     virtual std::uint64_t bytesTotal() const = 0;
 
-    /** As ItemSource::leftOut(), findings(). */
+    /** As those of ItemSource. */
     virtual std::size_t leftOut() const { return 0; }
     virtual std::vector<std::string> findings() const { return {}; }
+    virtual bool tellsPose() const { return true; }
 };
 
 /** The rawlog, or what RawlogConfig::open opens. Throws what they throw. */

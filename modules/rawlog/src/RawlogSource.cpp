@@ -72,6 +72,7 @@ struct RawlogSource::Impl
           lidar("LiDAR", "--lidar", firstGiven(c.lidar_label, c.rig.lidar.label)),
           imu("IMU", "--imu", firstGiven(c.imu_label, c.rig.imu.label))
     {
+        progress.pose_told = reader->tellsPose();
         lookAhead();
         if (config.from_time > 0) begin = progress.first + fromSeconds(config.from_time);
         if (config.to_time < 1e9) end = progress.first + fromSeconds(config.to_time);

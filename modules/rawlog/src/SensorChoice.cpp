@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "taut/core/ChoiceNeeded.h"
+
 namespace taut
 {
 SensorChoice::SensorChoice(std::string kind, std::string option, const std::string& expression)
@@ -17,9 +19,10 @@ bool SensorChoice::accepts(const std::string& label)
     if (!it->second) return false;
     if (!chosen_) chosen_ = label;
     if (*chosen_ == label) return true;
-    throw std::runtime_error(
+    throw ChoiceNeeded(
         "more than one " + kind_ + (expression_ ? " matches the label given" : " is in the log") +
-        ": " + describeSeen() + "; choose one with " + option_);
+            ": " + describeSeen(),
+        option_, expressionFor(*chosen_));
 }
 
 std::string SensorChoice::describeSeen() const

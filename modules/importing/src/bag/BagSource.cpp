@@ -9,6 +9,7 @@
 #include "BagKind.h"
 #include "BagReader.h"
 #include "Decompress.h"
+#include "LidarPose.h"
 #include "Messages.h"
 #include "PacketSource.h"
 #include "SensorOfTopic.h"
@@ -69,7 +70,8 @@ class BagSource : public ImportSource
  public:
     BagSource(
         std::string path, std::unique_ptr<BagReader> reader, BagTopic lidar,
-        std::optional<BagTopic> imu, const ImportOptions& options, const WarningSink& warn)
+        std::optional<BagTopic> imu, LidarPose pose, const ImportOptions& options,
+        const WarningSink& warn)
         : path_(std::move(path)),
           warn_(warn),
           lidar_(std::move(lidar)),
@@ -79,10 +81,12 @@ class BagSource : public ImportSource
               warn),
           sensor_(options.lidar_id),
           time_field_(options.time_field),
+          pose_(std::move(pose)),
           clock_(options.scan_stamp, warn)
     {
         judged_.push_back("LiDAR: topic " + describe({lidar_}));
         if (imu_) judged_.push_back("IMU: topic " + describe({*imu_}));
+        if (!pose_.finding.empty()) judged_.push_back(pose_.finding);
     }
 
     std::optional<ImportedItem> next() override
@@ -117,6 +121,8 @@ class BagSource : public ImportSource
         if (intensity_scale_ != 1) all.emplace_back(kIntensityScaled);
         return all;
     }
+
+    bool tellsPose() const override { return pose_.finding.empty() || pose_.T_imu_lidar; }
 
  private:
     /** Decoded, but not yet with a known clock. */
@@ -210,6 +216,7 @@ class BagSource : public ImportSource
             if (intensity_scale_ != 1)
                 for (LidarPoint& point : sweep.points) point.intensity *= intensity_scale_;
             Scan scan = clock_.toScan(std::move(sweep));
+            if (pose_.T_imu_lidar) scan.T_imu_lidar = *pose_.T_imu_lidar;
             scans_++;
             return scan;
         }
@@ -256,6 +263,7 @@ class BagSource : public ImportSource
     SortedBag bag_;
     SensorOfTopic sensor_;
     std::string time_field_;
+    LidarPose pose_;
     SweepClock clock_;
     std::vector<std::string> judged_;
     std::deque<Pending> ahead_;
@@ -284,6 +292,9 @@ std::unique_ptr<ImportSource> openBag(
     if (isPacketType(lidar.type))
         return openPackets(path, std::move(reader), topics, lidar, options, warn);
     const auto imu = chooseTopic(topics, {kImuType}, options.imu_topic, "--imu-topic");
-    return std::make_unique<BagSource>(path, std::move(reader), lidar, imu, options, warn);
+    LidarPose pose;
+    if (imu && !options.pose_given) pose = bag::findLidarPose(path, topics, lidar, *imu, warn);
+    return std::make_unique<BagSource>(
+        path, std::move(reader), lidar, imu, std::move(pose), options, warn);
 }
 }  // namespace taut

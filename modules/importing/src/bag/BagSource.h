@@ -9,8 +9,8 @@ bool isBag(const Recording& recording);
 
 /** Reads a ROS 1 bag (format 2.0) or a ROS 2 bag (MCAP, sqlite3; a file or the bag's folder):
  * sweeps from sensor_msgs/PointCloud2 and Livox CustomMsg, or from packets (PacketSource.h);
- * readings from sensor_msgs/Imu. Scans have their points' own times and the stamp of the first of
- * them, no label and no pose. Readings are as the message has them.
+ * readings from sensor_msgs/Imu. Scans have their points' own times, the stamp of the first of
+ * them, and the pose that tf tells; no label. Readings are as the message has them.
  *
  * The first sweeps are read ahead to judge what times and stamps mean; see findings().
  * Warnings:
@@ -26,6 +26,7 @@ bool isBag(const Recording& recording);
  *   scan_empty         a cloud without a valid point (left out)
  *   clock_offset       the stamps of the LiDAR and of the IMU are of clocks that differ
  *   second_sensor      sweeps of another sensor on the same topic were left out
+ *   tf_invalid, pose_unknown   see LidarPose.h
  *
  * Throws std::runtime_error, naming file and cause, if the file cannot be read as a bag or its
  * topics are ambiguous or absent; next() throws if the bag had no sweep that could be used. */

@@ -16,7 +16,7 @@ Time readTime(WireReader& reader)
     return seconds * 1'000'000'000 + nanoseconds;
 }
 
-/** std_msgs/Header; what the frame is comes from the rig, its name only tells sensors apart. */
+/** std_msgs/Header. */
 struct Header
 {
     Time stamp = 0;
@@ -168,5 +168,25 @@ ImuSample readImu(WireReader reader)
     skipNumbers(reader, 9);
     sample.accel = readVector(reader);
     return sample;
+}
+
+std::vector<FrameTransform> readTransforms(WireReader reader)
+{
+    constexpr std::size_t kSmallest = 4 + 4 + 4 + 4 + 7 * 8;  // bytes, with names of no letters
+    std::vector<FrameTransform> transforms(reader.sequence(kSmallest));
+    for (FrameTransform& t : transforms)
+    {
+        t.parent = readHeader(reader).frame;
+        t.child = reader.text();
+        t.translation = readVector(reader);
+        const Vector3d axis = readVector(reader);
+        t.rotation = {reader.number<double>(), axis.x(), axis.y(), axis.z()};
+    }
+    return transforms;
+}
+
+std::string readFrame(WireReader reader)
+{
+    return readHeader(reader).frame;
 }
 }  // namespace taut::bag

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "WireReader.h"
+#include "taut/core/Geometry.h"
 #include "taut/core/Imu.h"
 
 namespace taut::bag
@@ -53,6 +54,14 @@ struct RawPacket
     Bytes data;      //!< in the message
 };
 
+/** geometry_msgs/TransformStamped. */
+struct FrameTransform
+{
+    std::string parent, child;  //!< names of frames
+    Vector3d translation = Vector3d::Zero();
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  //!< of T_parent_child, as told
+};
+
 /** True for velodyne_msgs/VelodyneScan, pandar_msgs/PandarScan, nebula_msgs/NebulaPackets, and the
  * PacketMsg of ouster_ros and ouster_sensor_msgs. */
 bool isPacketType(const std::string& type);
@@ -67,4 +76,8 @@ Livox readLivox(WireReader reader);
 std::vector<RawPacket> readPackets(const std::string& type, WireReader reader);
 /** sensor_msgs/Imu, in the units of the message. */
 ImuSample readImu(WireReader reader);
+/** tf2_msgs/TFMessage or tf/tfMessage. */
+std::vector<FrameTransform> readTransforms(WireReader reader);
+/** The frame_id of a message that begins with a std_msgs/Header. */
+std::string readFrame(WireReader reader);
 }  // namespace taut::bag

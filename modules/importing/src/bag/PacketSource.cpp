@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "Decompress.h"
+#include "LidarPose.h"
 #include "Messages.h"
 #include "OusterDescription.h"
 #include "SortedBag.h"
@@ -58,6 +59,9 @@ class PacketSource : public ImportSource
         imu_port_ = imu_port;
     }
 
+    /** Nothing is taken from it where the sensor itself tells the pose. */
+    void placeBy(LidarPose pose) { pose_ = std::move(pose); }
+
     std::optional<ImportedItem> next() override
     {
         while (items_.empty() && !finished_)
@@ -70,6 +74,8 @@ class PacketSource : public ImportSource
         if (items_.empty()) return {};
         ImportedItem item = std::move(items_.front());
         items_.pop_front();
+        if (auto* scan = std::get_if<Scan>(&item); scan != nullptr && pose_.T_imu_lidar)
+            scan->T_imu_lidar = *pose_.T_imu_lidar;
         readings_ += std::holds_alternative<ImuSample>(item) ? 1 : 0;
         return item;
     }
@@ -81,10 +87,13 @@ class PacketSource : public ImportSource
         std::vector<std::string> lines{"LiDAR: topic " + describe({lidar_})};
         if (imu_) lines.push_back("IMU: topic " + describe({*imu_}));
         lines.insert(lines.end(), bag_.findings().begin(), bag_.findings().end());
+        if (!pose_.finding.empty()) lines.push_back(pose_.finding);
         for (const auto& decoder : decoders_)
             for (std::string& line : decoder->findings()) lines.push_back(std::move(line));
         return lines;
     }
+
+    bool tellsPose() const override { return pose_.finding.empty() || pose_.T_imu_lidar; }
 
  private:
     void take(const BagMessage& message)
@@ -201,6 +210,7 @@ class PacketSource : public ImportSource
     std::optional<BagTopic> imu_;
     SortedBag bag_;
     WarningSink warn_;
+    LidarPose pose_;
     Decoders decoders_;
     std::uint16_t lidar_port_ = 0, imu_port_ = 0;
     ImportedItems items_;
@@ -227,6 +237,8 @@ std::unique_ptr<ImportSource> openPackets(
                                                    : StampClock::SensorIfClose;
     auto source = std::make_unique<PacketSource>(
         path, std::move(reader), lidar, imu, fromSeconds(options.lidar_clock_offset), warn);
+    if (imu && !of_one_clock && !options.pose_given)
+        source->placeBy(findLidarPose(path, topics, lidar, *imu, warn));
     Decoders decoders;
     if (isOusterPacketType(lidar.type))
     {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "taut/core/ChoiceNeeded.h"
 #include "taut/core/NameExpression.h"
 
 namespace taut::bag
@@ -55,8 +56,9 @@ std::optional<BagTopic> chooseTopic(
             std::remove_if(found.begin(), found.end(), [](const BagTopic& t) { return t.empty; }),
             found.end());
     if (found.size() > 1)
-        throw std::runtime_error(
-            "several topics could be meant: " + describe(found) + "; " + option + " chooses");
+        throw ChoiceNeeded(
+            "several topics could be meant: " + describe(found), option,
+            expressionFor(found.front().name));
     if (found.empty() && !expression.empty())
         throw std::runtime_error(
             option + " '" + expression +

@@ -171,6 +171,8 @@ std::unique_ptr<ImportSource> openPlainFolder(
     {
         auto table = std::make_shared<ImuTable>(imu.string(), warn);
         streams.next_sample = [table] { return table->next(); };
+        streams.tells_pose = options.pose_given;
+        if (!options.pose_given) streams.findings.emplace_back(kPoseNotTold);
     }
     else
     {

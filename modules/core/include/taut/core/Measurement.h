@@ -32,6 +32,9 @@ struct StreamProgress
     /** Observations by label and MRPT class, of all sensors, used or not. The label of one that is
      * neither LiDAR nor IMU may be empty. Labels are valid UTF-8, as everywhere here. */
     std::map<std::pair<std::string, std::string>, std::size_t> sensors;
+    /** False if nothing in the recording tells where the LiDAR is on the IMU: the identity is
+     * assumed. A rawlog always tells. */
+    bool pose_told = true;
     /** Of a recording of another format, at its end: what was found out about it and used (rates,
      * topics, units, poses), one line each. */
     std::vector<std::string> findings;

@@ -35,6 +35,7 @@ class Import : public ItemSource
     /** Counts, rates and gaps of the sensors, then what the format found out. */
     std::vector<std::string> findings() const override;
     std::size_t leftOut() const override;
+    bool tellsPose() const override;
 
     /** Pose of the IMU on the vehicle: of the rig, else the identity. */
     Pose T_vehicle_imu() const;

@@ -42,6 +42,9 @@ struct ImportOptions
      */
     double lidar_clock_offset = 0;
 
+    /** The pose of the LiDAR on the IMU is told otherwise (a rig): it is not looked for. */
+    bool pose_given = false;
+
     /** Factors to m/s^2 and rad/s; nothing: judged by gravity. */
     std::optional<double> accel_scale, gyro_scale;
 };

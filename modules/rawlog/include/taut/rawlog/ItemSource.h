@@ -53,6 +53,10 @@ class ItemSource
 
     /** How often a part of the recording was left out so far, with a warning each. */
     virtual std::size_t leftOut() const { return 0; }
+
+    /** False if nothing in the recording tells where the LiDAR is on the IMU: known from the begin.
+     */
+    virtual bool tellsPose() const { return true; }
 };
 
 /** Opens such a recording from its begin; it may be opened several times. Warnings of the reading
