@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "VelodynePackets.h"
+#include "taut/files/MeshFile.h"
 
 namespace taut
 {
@@ -48,7 +49,7 @@ RecordedFiles recordedFiles(const std::string& rawlog)
 {
     return {
         rawlog, besides(rawlog, ".gt.tum"), besides(rawlog, ".biases.csv"),
-        besides(rawlog, ".points")};
+        besides(rawlog, ".points"), besides(rawlog, ".mesh.ply")};
 }
 
 Recorder::Recorder(
@@ -139,14 +140,22 @@ void Recorder::writeTruth() const
     if (!biases) throw std::runtime_error("cannot write '" + biases_path + "'");
 }
 
+void Recorder::writeWorld() const
+{
+    const Mesh& world = simulator_.scene().world.mesh();
+    writeMesh(part(files_.mesh), {world.vertices, world.triangles}, kMeshComment);
+}
+
 void Recorder::close()
 {
     writeImuUntil(std::numeric_limits<Time>::max());
     if (point_truth_) point_truth_->close();
     writeTruth();
+    if (config_.mesh) writeWorld();
     for (const std::string& file : {files_.truth, files_.biases})
         std::filesystem::rename(part(file), file);
     if (point_truth_) std::filesystem::rename(part(files_.points), files_.points);
+    if (config_.mesh) std::filesystem::rename(part(files_.mesh), files_.mesh);
     rawlog_.close();
 }
 }  // namespace taut

@@ -17,20 +17,25 @@ struct RecorderConfig
     std::string rawlog;    //!< its path; the truth is written beside it
     bool points = false;   //!< the truth of every point as well
     bool packets = false;  //!< the LiDAR as raw packets: VLP-16 and HDL-32E
+    bool mesh = false;     //!< the surface of what is at rest in the world as well
 };
 
 /** The files of a recording. */
 struct RecordedFiles
 {
-    std::string rawlog, truth, biases, points;
+    std::string rawlog, truth, biases, points, mesh;
 };
 
-/** OUT.rawlog, OUT.gt.tum, OUT.biases.csv, OUT.points. */
+/** The comment in OUT.mesh.ply. */
+inline const char* const kMeshComment = "taut-simulate: the world at rest";
+
+/** OUT.rawlog, OUT.gt.tum, OUT.biases.csv, OUT.points, OUT.mesh.ply. */
 RecordedFiles recordedFiles(const std::string& rawlog);
 
 /** Writes a simulation with its faults to files: OUT.rawlog, OUT.gt.tum (pose of the IMU in the
- * world at the true time of every sample), OUT.biases.csv, OUT.points. They get their names when
- * they are whole (close()), the rawlog last. Throws std::runtime_error naming the file that cannot
+ * world at the true time of every sample), OUT.biases.csv, OUT.points, OUT.mesh.ply (in the world
+ * frame of the truth, without what moves). They get their names when they are whole (close()), the
+ * rawlog last. Throws std::runtime_error naming the file that cannot
  * be written. */
 class Recorder
 {
@@ -53,6 +58,7 @@ class Recorder
     void writeImuUntil(Time end);
     void writePackets(simulation::SimulatedScan& scan, double azimuth, Duration clock);
     void writeTruth() const;
+    void writeWorld() const;
 
     RecorderConfig config_;
     RecordedFiles files_;

@@ -10,6 +10,7 @@
 #include "../Signals.h"
 #include "../guardOutput.h"
 #include "Recorder.h"
+#include "taut/files/MeshFile.h"
 #include "taut/rawlog/RawlogSource.h"
 
 namespace
@@ -45,6 +46,10 @@ std::optional<Options> parse(int argc, char** argv)
     TCLAP::SwitchArg points("", "points", "Write OUT.points: the truth of every point", cmd);
     TCLAP::SwitchArg packets(
         "", "packets", "Write a VLP-16 or HDL-32E as raw packets instead of points", cmd);
+    TCLAP::SwitchArg mesh(
+        "", "mesh",
+        "Write OUT.mesh.ply: the surface of all that is at rest, for taut-evaluate --map-truth",
+        cmd);
     TCLAP::ValueArg<int> threads(
         "", "threads", "0 (default): as many as there are cores", false, 0, "N", cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "No progress", cmd);
@@ -59,7 +64,7 @@ std::optional<Options> parse(int argc, char** argv)
     if (seed.isSet()) options.settings.push_back("seed=" + std::to_string(seed.getValue()));
     if (duration.isSet())
         options.settings.push_back("duration=" + std::to_string(duration.getValue()));
-    options.recorder = {output.getValue(), points.getValue(), packets.getValue()};
+    options.recorder = {output.getValue(), points.getValue(), packets.getValue(), mesh.getValue()};
     if (threads.getValue() < 0) throw taut::UsageError("--threads is negative");
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
     options.threads = threads.getValue() > 0 ? threads.getValue() : cores;
@@ -97,6 +102,8 @@ void guardOutputs(const Options& options, const taut::simulation::Scenario& scen
     taut::guardOutput(files.truth, inputs, begins("# timestamp tx ty tz qx qy qz qw\n"));
     taut::guardOutput(files.biases, inputs, begins("t,bias_gyro_x,"));
     if (options.recorder.points) taut::guardOutput(files.points, inputs, begins("TAUTPNTS"));
+    if (options.recorder.mesh)
+        taut::guardOutput(files.mesh, inputs, begins(taut::meshFileStart(taut::kMeshComment)));
 }
 
 /** The exit code. */

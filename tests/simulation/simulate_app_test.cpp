@@ -10,7 +10,9 @@
 
 #include "program.h"
 #include "taut/core/Geometry.h"
+#include "taut/files/MeshFile.h"
 #include "taut/rawlog/RawlogSource.h"
+#include "taut/simulation/RayCaster.h"
 #include "taut/trajectory/Interpolation.h"
 #include "taut/trajectory/PointTruth.h"
 #include "taut/trajectory/TrajectoryFile.h"
@@ -173,6 +175,36 @@ TEST_F(SimulateApp, SameSeedSameBits)
         EXPECT_EQ(contentOf(file("a" + ending)), contentOf(file("b" + ending))) << ending;
         EXPECT_NE(contentOf(file("a" + ending)), contentOf(file("c" + ending))) << ending;
     }
+}
+
+TEST_F(SimulateApp, WritesTheWorldThatTheBeamsHit)
+{
+    ASSERT_EQ(simulate("--quiet --points --mesh").exit_code, 0);
+    const TriangleMesh world = readMesh(file("log.mesh.ply"));
+    simulation::Mesh mesh;
+    mesh.vertices = world.vertices;
+    mesh.triangles = world.triangles;
+    mesh.reflectivity.assign(mesh.triangles.size(), 0.5F);
+    const simulation::RayCaster caster(mesh);
+    const Trajectory trajectory = readTum(file("log.gt.tum"));
+    const TrajectoryInterpolator truth(trajectory);
+    PointTruthReader points(file("log.points"));
+    UndistortedScan scan;
+    std::size_t near = 0, all = 0;
+    while (points.next(scan))
+    {
+        const auto T = truth.at(scan.stamp);
+        if (!T) continue;
+        for (std::size_t i = 0; i < scan.positions.size(); i += 53, all++)
+            near += caster.clearance(*T * scan.positions[i].cast<double>(), 0.08) < 0.08 ? 1 : 0;
+    }
+    ASSERT_GT(all, 1000U);
+    // Noise is 2 cm at most; the rest are people and mixed pixels.
+    EXPECT_GT(static_cast<double>(near), 0.97 * static_cast<double>(all));
+    EXPECT_EQ(simulate("--quiet --mesh --set duration=0.5").exit_code, 0) << "replaces its own";
+    std::ofstream(file("log.mesh.ply")) << "ply\nformat binary_little_endian 1.0\ncomment mine\n";
+    EXPECT_EQ(simulate("--quiet --mesh").exit_code, 2);
+    EXPECT_THAT(contentOf(file("log.mesh.ply")), HasSubstr("mine"));
 }
 
 TEST_F(SimulateApp, FaultsReachTheReader)

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+
+#include "taut/files/MeshFile.h"
 
 namespace taut::simulation
 {
@@ -202,5 +205,16 @@ void addExtrusion(
             addTriangle(mesh, ia, ib, ic, reflectivity);
         }
     }
+}
+
+Mesh loadMesh(const std::string& path, float reflectivity)
+{
+    TriangleMesh read = readMesh(path);
+    if (read.triangles.empty()) throw std::runtime_error("mesh '" + path + "': it has no faces");
+    Mesh mesh;
+    mesh.vertices = std::move(read.vertices);
+    mesh.triangles = std::move(read.triangles);
+    mesh.reflectivity.assign(mesh.triangles.size(), reflectivity);
+    return mesh;
 }
 }  // namespace taut::simulation
