@@ -206,7 +206,11 @@ CommandTable tableOf(TCLAP::CmdLineInterface& cmd, const std::string& program, c
     }
     table.synopses.push_back(synopsisOf(table.entries));
     if (usage.alone != nullptr)
-        table.synopses.push_back("--" + usage.alone->getName() + " [options]");
+    {
+        const std::string value = valueOf(*usage.alone);
+        table.synopses.push_back(
+            "--" + usage.alone->getName() + (value.empty() ? "" : " " + value) + " [options]");
+    }
     table.examples = usage.examples;
     return table;
 }
@@ -229,7 +233,7 @@ class Output : public TCLAP::StdOutput
  public:
     Output(std::string program, const Usage& usage) : program_(std::move(program)), usage_(usage) {}
 
-    /** The required arguments are missing, but a switch that needs none is there. */
+    /** The required arguments are missing, but an option that needs none is there. */
     bool complete() const { return complete_; }
 
     void usage(TCLAP::CmdLineInterface& cmd) override

@@ -23,8 +23,8 @@ struct UsageError : std::runtime_error
 struct Usage
 {
     std::vector<std::string> examples;  //!< arguments without the program's name
-    /** A switch that needs none of the required arguments; null: there is none. */
-    const TCLAP::SwitchArg* alone = nullptr;
+    /** An option that needs none of the required arguments; null: there is none. */
+    const TCLAP::Arg* alone = nullptr;
     /** What the program requires, though TCLAP does not: it may be given in another way. */
     std::vector<const TCLAP::Arg*> required = {};
 };

@@ -1,16 +1,16 @@
-/** taut-evaluate: scores an estimated trajectory against the truth.
+/** taut-evaluate: scores an estimated trajectory and a map against the truth.
  * Exit codes: 0 scored, 1 failed or refused, 2 bad usage. */
 #include <algorithm>
-#include <cstdio>
+#include <initializer_list>
 #include <iostream>
 #include <optional>
 
 #include "CommandLine.h"
 #include "taut/core/WarningLog.h"
+#include "taut/evaluation/Report.h"
 #include "taut/slam/LoopScores.h"
 #include "taut/trajectory/Interpolation.h"
 #include "taut/trajectory/Plots.h"
-#include "taut/trajectory/Report.h"
 #include "taut/trajectory/TrajectoryFile.h"
 
 namespace
@@ -23,6 +23,8 @@ struct Options
     bool json = false;
     double from_time = 0;  // [s] since the first true pose
     taut::ScoreOptions score;
+    taut::MapOptions map;
+    int threads = 1;
 };
 
 taut::Alignment alignmentOf(const std::string& name)
@@ -51,12 +53,32 @@ taut::PlotFormat plotFormatOf(const std::string& name)
     throw taut::UsageError("'" + name + "' is not a format of plots (svg, png)");
 }
 
+taut::MapOptions mapOptions(
+    TCLAP::ValueArg<std::string>& map, TCLAP::ValueArg<std::string>& truth,
+    TCLAP::ValueArg<double>& within, TCLAP::ValueArg<double>& reach)
+{
+    if (truth.isSet() && !map.isSet()) throw taut::UsageError("--map-truth needs --map");
+    for (TCLAP::ValueArg<double>* arg : {&within, &reach})
+    {
+        if (!arg->isSet()) continue;
+        if (!truth.isSet()) throw taut::UsageError("--" + arg->getName() + " needs --map-truth");
+        if (!(arg->getValue() > 0))
+            throw taut::UsageError("--" + arg->getName() + " must be above zero");
+    }
+    taut::MapOptions options;
+    options.map = map.getValue();
+    options.truth = truth.getValue();
+    options.within = within.getValue();
+    options.reach = reach.getValue();
+    return options;
+}
+
 /** Nothing if only help was asked for. */
 std::optional<Options> parse(int argc, char** argv)
 {
     TCLAP::CmdLine cmd(
-        "taut-evaluate: scores an estimated trajectory against the truth. Exit codes: 0 scored, "
-        "1 failed or refused, 2 bad usage.",
+        "taut-evaluate: scores an estimated trajectory and a map against the truth. Exit codes: 0 "
+        "scored, 1 failed or refused, 2 bad usage.",
         ' ', TAUT_VERSION);
     TCLAP::ValueArg<std::string> truth(
         "", "truth", "True trajectory (TUM file, or EuRoC's data.csv)", true, "", "FILE", cmd);
@@ -67,8 +89,11 @@ std::optional<Options> parse(int argc, char** argv)
         cmd);
     TCLAP::SwitchArg json("", "json", "Write JSON instead of a table", cmd);
     TCLAP::ValueArg<std::string> alignment(
-        "", "align", "Alignment of the estimate to the truth (default se3)", false, "se3",
-        "se3|yaw|none", cmd);
+        "", "align",
+        "Alignment of the estimate to the truth (default se3). A map takes that of its "
+        "trajectory; without one, it is laid on --map-truth by point-to-plane ICP from the frame "
+        "that it has (se3, yaw), or taken as it is (none)",
+        false, "se3", "se3|yaw|none", cmd);
     TCLAP::ValueArg<std::string> frame_estimate(
         "", "frame-estimate",
         "Trajectory of another run in the same frame, such as the known map's: the alignment is "
@@ -77,8 +102,10 @@ std::optional<Options> parse(int argc, char** argv)
     TCLAP::ValueArg<std::string> frame_truth(
         "", "frame-truth", "The truth of --frame-estimate", false, "", "FILE", cmd);
     TCLAP::ValueArg<double> min_coverage(
-        "", "min-coverage", "Share of the truth to be covered, else refused (default 0.5)", false,
-        0.5, "0..1", cmd);
+        "", "min-coverage",
+        "Share of the truth to be covered, else refused (default 0.5); of a map that is laid on "
+        "its truth by ICP, share of its points within 0.5 m of it",
+        false, 0.5, "0..1", cmd);
     TCLAP::ValueArg<int> min_poses(
         "", "min-poses", "Poses to be scored, else refused (default 10)", false, 10, "N", cmd);
     TCLAP::ValueArg<double> from_time(
@@ -97,6 +124,28 @@ std::optional<Options> parse(int argc, char** argv)
     TCLAP::ValueArg<std::string> loops(
         "", "loops", "Score the loops of that folder of results too: precision, recall, errors",
         false, "", "OUT/", cmd);
+    TCLAP::ValueArg<std::string> map(
+        "", "map",
+        "Score that map too (PLY): thickness of its walls and mean map entropy; with --map-truth, "
+        "distance and completeness. Needs no trajectories",
+        false, "", "map.ply", cmd);
+    TCLAP::ValueArg<std::string> map_truth(
+        "", "map-truth",
+        "True surface of the place: a mesh (PLY, OBJ; taut-simulate --mesh writes one) or a dense "
+        "cloud (PLY)",
+        false, "", "FILE", cmd);
+    TCLAP::ValueArg<double> map_within(
+        "", "map-within",
+        "Distance for completeness [m] (default 0.05): the share of the truth that has a point of "
+        "the map so near",
+        false, taut::MapOptions().within, "M", cmd);
+    TCLAP::ValueArg<double> map_reach(
+        "", "map-reach",
+        "Leave out points of the map that are further from the truth [m], as where it covers less "
+        "(default: all count)",
+        false, taut::MapOptions().reach, "M", cmd);
+    TCLAP::ValueArg<int> threads(
+        "", "threads", "For the map; 0 (default): as many as there are cores", false, 0, "N", cmd);
     TCLAP::ValueArg<std::string> plot(
         "", "plot", "Draw the trajectory and the errors into that folder (needs gnuplot)", false,
         "", "FOLDER", cmd);
@@ -104,12 +153,16 @@ std::optional<Options> parse(int argc, char** argv)
         "", "plot-format", "Format of the plots (default svg)", false, "svg", "svg|png", cmd);
     const taut::Usage usage{
         {"--truth rawlogs/hall_fast.gt.tum --estimate out/hall_fast/trajectory.tum",
-         "--truth GT.tum --estimate trajectory.tum --align yaw --plot out/plots"}};
+         "--truth GT.tum --estimate trajectory.tum --align yaw --plot out/plots",
+         "--map out/run/map.ply --map-truth log.mesh.ply --json"},
+        &map};
     if (!taut::parseCommandLine(cmd, argc, argv, usage)) return {};
 
     Options options;
     options.truth = truth.getValue();
     options.estimate = estimate.getValue();
+    if (options.truth.empty() != options.estimate.empty())
+        throw taut::UsageError("--truth and --estimate need each other");
     options.kitti_times = kitti_times.getValue();
     options.json = json.getValue();
     options.score.alignment = alignmentOf(alignment.getValue());
@@ -127,9 +180,17 @@ std::optional<Options> parse(int argc, char** argv)
     if (options.points.empty() != options.points_truth.empty())
         throw taut::UsageError("--points and --points-truth need each other");
     options.loops = loops.getValue();
-    if (!options.loops.empty() && options.json)
-        throw taut::UsageError("--loops has no JSON yet: leave one of both out");
     options.plot_folder = plot.getValue();
+    for (const TCLAP::Arg* arg : std::initializer_list<const TCLAP::Arg*>{
+             &kitti_times, &frame_truth, &points, &loops, &plot, &from_time})
+        if (options.truth.empty() && arg->isSet())
+            throw taut::UsageError("--" + arg->getName() + " needs --truth and --estimate");
+    options.map = mapOptions(map, map_truth, map_within, map_reach);
+    if (options.truth.empty() && options.map.map.empty())
+        throw taut::UsageError("a file without a name");
+    options.map.alignment = options.score.alignment;
+    options.map.min_near = options.score.min_coverage;
+    options.threads = taut::threadsOf(threads.getValue());
     options.plot_format = plotFormatOf(plot_format.getValue());
     if (min_poses.getValue() < 0) throw taut::UsageError("--min-poses is negative");
     options.score.min_poses = static_cast<std::size_t>(min_poses.getValue());
@@ -161,27 +222,21 @@ std::optional<taut::Pose> poseAt(const taut::Trajectory& truth, taut::Time t)
         before.T_world_imu, after->T_world_imu, taut::toSeconds(t - before.t) / gap);
 }
 
-void printLoops(const taut::LoopScores& s)
+taut::Trajectory readTrajectory(
+    const std::string& path, const Options& options, const taut::WarningSink& warn)
 {
-    std::printf(
-        "\nloops      %d in the graph, %d wrong: precision %.3f\n"
-        "revisits   %d submaps, %d recognised: recall %.3f\n"
-        "errors     largest %.3f m; NEES %.2f a degree of freedom\n",
-        s.loops, s.wrong, s.precision(), s.revisits, s.recognised, s.recall(), s.largest_error,
-        s.nees);
+    if (!options.kitti_times.empty()) return taut::readKitti(path, options.kitti_times);
+    const bool csv = path.size() > 4 && path.compare(path.size() - 4, 4, ".csv") == 0;
+    return csv ? taut::readEuroc(path, warn) : taut::readTum(path, warn);
 }
 
-void run(const Options& options)
+/** Scores what has to do with trajectories, with the truth that they were scored against. */
+taut::Trajectory scoreTrajectories(const Options& options, taut::Evaluation& evaluation)
 {
     taut::WarningLog warnings([](const taut::Warning& w)
                               { std::cerr << "warning: " << w.text << "\n"; });
-    const auto warn = warnings.sink();
     const auto read = [&](const std::string& path)
-    {
-        if (!options.kitti_times.empty()) return taut::readKitti(path, options.kitti_times);
-        const bool csv = path.size() > 4 && path.compare(path.size() - 4, 4, ".csv") == 0;
-        return csv ? taut::readEuroc(path, warn) : taut::readTum(path, warn);
-    };
+    { return readTrajectory(path, options, warnings.sink()); };
     taut::Trajectory truth = read(options.truth), estimate = read(options.estimate);
     taut::Time begin = 0;
     if (options.from_time > 0 && !truth.empty())
@@ -198,18 +253,34 @@ void run(const Options& options)
             score.alignment);
         score.alignment = taut::Alignment::Given;
     }
-    const taut::Scores scores = scoreTrajectory(truth, estimate, score);
+    evaluation.trajectory = scoreTrajectory(truth, estimate, score);
     std::cerr << warnings.summaryOfRest();
-    std::optional<taut::PointScores> points;
     if (!options.points.empty())
-        points = taut::scorePoints(
+        evaluation.points = taut::scorePoints(
             options.points_truth, options.points, options.score.min_coverage, begin);
-    std::cout << (options.json ? scoresAsJson(scores, points) : scoresAsText(scores, points));
-    std::cout.flush();
     if (!options.loops.empty())
-        printLoops(taut::scoreLoops(options.loops, [&](taut::Time t) { return poseAt(truth, t); }));
+        evaluation.loops =
+            taut::scoreLoops(options.loops, [&](taut::Time t) { return poseAt(truth, t); });
+    return truth;
+}
+
+void run(const Options& options)
+{
+    taut::Evaluation evaluation;
+    taut::Trajectory truth;
+    if (!options.truth.empty()) truth = scoreTrajectories(options, evaluation);
+    if (!options.map.map.empty())
+    {
+        taut::MapOptions map = options.map;
+        if (evaluation.trajectory)
+            map.T_truth_map = evaluation.trajectory->absolute.T_truth_estimate;
+        taut::Executor executor(options.threads);
+        evaluation.map = taut::scoreMapFile(map, executor);
+    }
+    std::cout << (options.json ? scoresAsJson(evaluation) : scoresAsText(evaluation));
+    std::cout.flush();
     if (!options.plot_folder.empty())
-        taut::plotScores(scores, truth, options.plot_folder, options.plot_format);
+        taut::plotScores(*evaluation.trajectory, truth, options.plot_folder, options.plot_format);
 }
 }  // namespace
 

@@ -8,30 +8,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "taut/core/Triangle.h"
+
 namespace taut::simulation
 {
-namespace
-{
-/** The point of triangle abc closest to p, by the regions of its Voronoi cells. */
-Vector3d closestPoint(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c)
-{
-    const auto onSegment = [&p](const Vector3d& s, const Vector3d& e) -> Vector3d
-    {
-        const double length2 = (e - s).squaredNorm();
-        const double k = length2 > 0 ? (p - s).dot(e - s) / length2 : 0;
-        return s + std::clamp(k, 0.0, 1.0) * (e - s);
-    };
-    const Vector3d n = (b - a).cross(c - a);
-    const bool inside = n.dot((b - a).cross(p - a)) >= 0 && n.dot((c - b).cross(p - b)) >= 0 &&
-                        n.dot((a - c).cross(p - c)) >= 0 && n.squaredNorm() > 0;
-    if (inside) return p - n * (n.dot(p - a) / n.squaredNorm());
-    Vector3d best = onSegment(a, b);
-    for (const Vector3d& q : {onSegment(b, c), onSegment(c, a)})
-        if ((q - p).squaredNorm() < (best - p).squaredNorm()) best = q;
-    return best;
-}
-}  // namespace
-
 struct RayCaster::Scene
 {
     explicit Scene(Mesh m) : mesh(std::move(m))
@@ -155,7 +135,7 @@ double RayCaster::clearance(const Vector3d& point, double max_distance) const
     {
         auto& s = *static_cast<Search*>(arguments->userPtr);
         const std::uint32_t t = arguments->primID;
-        const Vector3d q = closestPoint(
+        const Vector3d q = nearestOnTriangle(
             s.point, s.scene->corner(t, 0), s.scene->corner(t, 1), s.scene->corner(t, 2));
         const double distance = (q - s.point).norm();
         if (distance >= s.best) return false;

@@ -1,6 +1,7 @@
 #include "taut/trajectory/Statistics.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace taut
 {
@@ -21,5 +22,13 @@ Statistics statisticsOf(std::vector<double> values)
     s.median = (values[(s.count - 1) / 2] + values[s.count / 2]) / 2;
     s.max = values.back();
     return s;
+}
+
+double quantileOf(std::vector<double>& values, double share)
+{
+    if (values.empty()) return 0;
+    const auto rank = std::lround(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + rank, values.end());
+    return values[static_cast<std::size_t>(rank)];
 }
 }  // namespace taut

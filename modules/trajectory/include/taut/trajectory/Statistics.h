@@ -16,4 +16,8 @@ struct Statistics
 
 /** Of values >= 0; all zero where there are none. */
 Statistics statisticsOf(std::vector<double> values);
+
+/** The value that a share (0..1) of the values does not exceed: the one of rank share (n - 1),
+ * rounded. 0 where there are none. Changes the order of the values. */
+double quantileOf(std::vector<double>& values, double share);
 }  // namespace taut
