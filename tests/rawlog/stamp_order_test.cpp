@@ -43,9 +43,9 @@ struct Result
     }
 };
 
-Result judge(const std::vector<Given>& given)
+Result judge(const std::vector<Given>& given, StampOrder::Judge how = StampOrder::Judge::Later)
 {
-    StampOrder order;
+    StampOrder order(how);
     Result result;
     const auto take = [&](const StampOrder::Judged& judged)
     {
@@ -200,4 +200,32 @@ TEST(TheOrderOfStamps, LooksAheadNoFurtherThanItMust)
         most = std::max(most, held);
     }
     EXPECT_LE(most, 115u);  // a second of both
+}
+
+TEST(StampOrder, JudgedAtOnceGoodStampsAreGivenAsTheyCome)
+{
+    const auto given = usual(5);
+    StampOrder order(StampOrder::Judge::AtOnce);
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < given.size(); i++)
+    {
+        order.push(given[i].sensor, given[i].t);
+        while (order.ready()) EXPECT_EQ(order.pop()->id, taken++);
+        if (i > 230)  // a second, two of the LiDAR, have been seen
+        {
+            EXPECT_EQ(taken, i + 1);
+        }
+    }
+}
+
+TEST(StampOrder, JudgedAtOnceAFaultIsStillJudgedByWhatFollows)
+{
+    auto given = usual(8);
+    given[400].t += 50 * kSecond;
+    for (std::size_t i = 600; i < given.size(); i++) given[i].t -= 3 * kSecond;
+    const Result later = judge(given), at_once = judge(given, StampOrder::Judge::AtOnce);
+    EXPECT_EQ(at_once.count(Verdict::Outlier), 1u);
+    EXPECT_EQ(at_once.count(Verdict::SetBack), 2u);
+    EXPECT_EQ(at_once.imu, later.imu);
+    EXPECT_EQ(at_once.lidar, later.lidar);
 }

@@ -5,16 +5,21 @@
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 namespace taut
 {
 namespace
 {
 constexpr unsigned kCompressedBuffer = 1u << 18;
+constexpr std::uint64_t kMagicSize = 2;
 constexpr std::size_t kPiece = 1u << 14;  // small: a piece with damage in it is lost whole
 }  // namespace
 
-GzInput::GzInput(const std::string& path) : path_(path), buffer_(kPeekSize + kPiece)
+GzInput::GzInput(const std::string& path) : GzInput(path, {}) {}
+
+GzInput::GzInput(const std::string& path, WaitForGrowth wait)
+    : path_(path), wait_(std::move(wait)), buffer_(kPeekSize + kPiece)
 {
     namespace fs = std::filesystem;
     std::error_code error;
@@ -26,8 +31,8 @@ GzInput::GzInput(const std::string& path) : path_(path), buffer_(kPeekSize + kPi
         throw std::runtime_error("cannot read '" + path + "': it is not a regular file");
     file_.reset(gzopen(path.c_str(), "rb"));
     if (!file_) throw std::runtime_error("cannot open '" + path + "': " + std::strerror(errno));
-    size_ = fs::file_size(path, error);
-    if (error) throw std::runtime_error("cannot read '" + path + "': " + error.message());
+    size_ = sizeNow();
+    waitForBegin();
     if (size_ == 0) throw std::runtime_error("'" + path + "' is empty");
     gzbuffer(file_.get(), kCompressedBuffer);
 }
@@ -77,16 +82,49 @@ bool GzInput::fill()
     end_ -= begin_;
     begin_ = 0;
     const auto room = static_cast<unsigned>(std::min(kPiece, buffer_.size() - end_));
-    const int n = gzread(file_.get(), buffer_.data() + end_, room);
+    int n = gzread(file_.get(), buffer_.data() + end_, room);
+    while (n <= 0 && waitForMore()) n = gzread(file_.get(), buffer_.data() + end_, room);
     if (n > 0) end_ += static_cast<std::size_t>(n);
     return n > 0;
+}
+
+/* By its first bytes a file is told to be compressed or not. */
+void GzInput::waitForBegin()
+{
+    while (wait_ && growth_ == LogGrowth::More && size_ < kMagicSize)
+    {
+        growth_ = wait_();
+        size_ = sizeNow();
+    }
+}
+
+/* True if there may be more by now. What comes after the last answer of the one who is asked is not
+ * missed: it looks once more. */
+bool GzInput::waitForMore()
+{
+    int code = Z_OK;
+    gzerror(file_.get(), &code);
+    const bool at_end = code == Z_OK || code == Z_BUF_ERROR || code == Z_STREAM_END;
+    if (!wait_ || !at_end || growth_ != LogGrowth::More) return false;
+    growth_ = wait_();
+    size_ = sizeNow();
+    gzclearerr(file_.get());
+    return true;
+}
+
+std::uint64_t GzInput::sizeNow() const
+{
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path_, error);
+    if (error) throw std::runtime_error("cannot read '" + path_ + "': " + error.message());
+    return size;
 }
 
 bool GzInput::isDamaged() const
 {
     int code = Z_OK;
     gzerror(file_.get(), &code);
-    return code != Z_OK && code != Z_STREAM_END;
+    return code != Z_OK && code != Z_STREAM_END && !(isLeft() && code == Z_BUF_ERROR);
 }
 
 std::uint64_t GzInput::compressedPosition() const

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "taut/rawlog/LogGrowth.h"
+
 namespace taut
 {
 /** A file, compressed or not, read forward. It knows its position in the compressed file, tells a
@@ -19,6 +21,9 @@ class GzInput
     /** Throws std::runtime_error naming the file if it cannot be read, is no regular file, or is
      * empty. */
     explicit GzInput(const std::string& path);
+
+    /** Of a file that grows: where it ends, `wait` is asked (also here, while it is empty). */
+    GzInput(const std::string& path, WaitForGrowth wait);
 
     /** All `count` bytes; throws std::runtime_error at the end of the file and on damage. */
     void read(void* buffer, std::size_t count);
@@ -42,11 +47,17 @@ class GzInput
      * damaged there. */
     bool atEnd();
 
+    /** True once the waiting was given up: that the file is not complete is no damage then. */
+    bool isLeft() const { return growth_ == LogGrowth::Left; }
+
     std::uint64_t compressedPosition() const;
     std::uint64_t compressedSize() const { return size_; }
 
  private:
     bool fill();
+    void waitForBegin();
+    bool waitForMore();
+    std::uint64_t sizeNow() const;
     [[noreturn]] void throwDamaged() const;
     bool isDamaged() const;
 
@@ -55,6 +66,8 @@ class GzInput
         void operator()(gzFile file) const { gzclose_r(file); }
     };
     std::string path_;
+    WaitForGrowth wait_;
+    LogGrowth growth_ = LogGrowth::More;
     std::uint64_t size_ = 0;
     std::unique_ptr<gzFile_s, Closer> file_;
     std::vector<std::uint8_t> buffer_;  // decompressed; [begin_, end_) is not read yet

@@ -30,7 +30,8 @@ CObservation::Ptr deserialize(const ObjectCopy& copy)
 }
 }  // namespace
 
-ObservationReader::ObservationReader(const std::string& path) : input_(path)
+ObservationReader::ObservationReader(const std::string& path, WaitForGrowth wait)
+    : input_(path, std::move(wait))
 {
     first_ = read();
     if (objects_ == 0)
@@ -55,7 +56,8 @@ std::optional<LogEntry> ObservationReader::read()
         }
         catch (const std::exception& e)
         {
-            damage_ = errorText(e);
+            // Of a log that is left while it is written, the last object may not be whole yet.
+            if (!input_.isLeft()) damage_ = errorText(e);
             finished_ = true;
         }
     }

@@ -16,7 +16,7 @@ class ObservationReader : public EntrySource
 {
  public:
     /** Throws std::runtime_error naming the file if it is missing, empty or no rawlog. */
-    explicit ObservationReader(const std::string& path);
+    explicit ObservationReader(const std::string& path, WaitForGrowth wait = {});
 
     /** The next one in the order of the file; none at the end or where the file cannot be read on.
      */

@@ -105,12 +105,18 @@ std::string passOver(GzInput& input, const ObjectHeader& header, bool ends_with_
     const std::size_t marks = ends_with_frame ? 2 : 1;
     input.skip(header.bytes);
     Ends ends;
-    for (;;)
+    // No more at first than is needed: of a log that is being written it has to be waited for.
+    for (std::size_t window = kOverlap;;)
     {
-        const auto next = input.peek(GzInput::kPeekSize);
+        const auto next = input.peek(window);
         const std::size_t at = findEnd(next, marks);
         const bool found = at < next.size;
-        const bool more = next.size >= GzInput::kPeekSize;
+        const bool more = next.size >= window;
+        if (!found && more && window < GzInput::kPeekSize)
+        {
+            window = std::min(2 * window, GzInput::kPeekSize);
+            continue;
+        }
         const std::size_t n = found || !more ? at : next.size - kOverlap;
         ends.add(next.data, n);
         input.skip(found || !more ? n + 1 : n);  // throws where nothing is left

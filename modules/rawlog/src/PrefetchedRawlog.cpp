@@ -1,5 +1,6 @@
 #include "taut/rawlog/PrefetchedRawlog.h"
 
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -33,7 +34,8 @@ struct PrefetchedRawlog::Impl
     Impl(const RawlogConfig& config, WarningSink w, std::size_t c)
         : warn(std::move(w)),
           max_scans(c > 0 ? c : 1),
-          source(config, [this](const Warning& warning) { warnings.push_back(warning); }),
+          source(
+              stoppable(config), [this](const Warning& warning) { warnings.push_back(warning); }),
           progress(source.progress()),
           reader([this] { read(); })
     {
@@ -49,11 +51,13 @@ struct PrefetchedRawlog::Impl
         reader.join();
     }
 
+    RawlogConfig stoppable(RawlogConfig config);
     void read();
     std::optional<Measurement> next();
 
     WarningSink warn;
     std::size_t max_scans;
+    std::atomic<bool> stop{false};  // before the source, which asks it
     std::vector<Warning> warnings;  // of the step being read; the reader's own once it runs
     RawlogSource source;
 
@@ -61,13 +65,21 @@ struct PrefetchedRawlog::Impl
     std::condition_variable changed;
     std::deque<Step> steps;
     std::size_t scans = 0;  // in steps
-    bool stop = false;
 
     StreamProgress progress;  // the consumer's own from here
     bool incomplete = false, finished = false;
 
     std::thread reader;  // last: the thread uses all of the above
 };
+
+/** It need not wait for a log to grow when nobody reads on. */
+RawlogConfig PrefetchedRawlog::Impl::stoppable(RawlogConfig config)
+{
+    if (!config.wait_for_growth) return config;
+    config.wait_for_growth = [this, wait = std::move(config.wait_for_growth)]
+    { return stop ? LogGrowth::Left : wait(); };
+    return config;
+}
 
 void PrefetchedRawlog::Impl::read()
 {
@@ -89,7 +101,8 @@ void PrefetchedRawlog::Impl::read()
 
         std::unique_lock lock(mutex);
         changed.wait(
-            lock, [this] { return stop || (scans < max_scans && steps.size() < kMaxSteps); });
+            lock,
+            [this] { return stop.load() || (scans < max_scans && steps.size() < kMaxSteps); });
         if (stop) return;
         scans += step.isScan();
         steps.push_back(std::move(step));

@@ -70,7 +70,8 @@ struct RawlogSource::Impl
           sink(std::move(w)),
           reader(openEntries(c, sink)),
           lidar("LiDAR", "--lidar", firstGiven(c.lidar_label, c.rig.lidar.label)),
-          imu("IMU", "--imu", firstGiven(c.imu_label, c.rig.imu.label))
+          imu("IMU", "--imu", firstGiven(c.imu_label, c.rig.imu.label)),
+          order(c.wait_for_growth ? StampOrder::Judge::AtOnce : StampOrder::Judge::Later)
     {
         progress.pose_told = reader->tellsPose();
         lookAhead();

@@ -72,6 +72,7 @@ bool StampOrder::ready() const
 {
     if (queue_.empty()) return false;
     const Entry& front = queue_.front();
+    if (judge_ == Judge::AtOnce && follows(front)) return true;
     const auto own = static_cast<std::size_t>(front.sensor);
     const auto since = [&](std::size_t i) { return streams_[i].elapsed - front.elapsed[i]; };
     const bool settled = streams_[own].descents == 0 || streams_[own].after_descent >= kNeighbours;
@@ -84,9 +85,7 @@ std::optional<StampOrder::Judged> StampOrder::pop()
     if (queue_.empty()) return {};
     Entry& front = queue_.front();
     Stream& stream = streamOf(front.sensor);
-    const bool follows = stream.last && front.t > *stream.last && front.t <= *stream.last + kGap;
-    if (follows && stream.descents == (front.descends ? 1u : 0u))
-        return give(front, Verdict::Good, 0);
+    if (follows(front)) return give(front, Verdict::Good, 0);
 
     const Entries own = pendingOf(front.sensor);
     if (isOutlier(own))
@@ -97,6 +96,14 @@ std::optional<StampOrder::Judged> StampOrder::pop()
     if (front.sensor == Sensor::Imu)
         if (Entry* late = lateOne(own)) return give(*late, Verdict::Sorted, front.t - late->t);
     return give(front, Verdict::Good, 0);
+}
+
+/** Within a second after the one before, and nothing that is pending casts a doubt on it. */
+bool StampOrder::follows(const Entry& front) const
+{
+    const Stream& stream = streams_[static_cast<std::size_t>(front.sensor)];
+    return stream.last && front.t > *stream.last && front.t <= *stream.last + kGap &&
+           stream.descents == (front.descends ? 1u : 0u);
 }
 
 StampOrder::Entries StampOrder::pendingOf(Sensor sensor)

@@ -9,6 +9,7 @@
 #include "taut/core/Measurement.h"
 #include "taut/core/Warning.h"
 #include "taut/rawlog/ItemSource.h"
+#include "taut/rawlog/LogGrowth.h"
 #include "taut/rawlog/Rig.h"
 
 namespace taut
@@ -28,6 +29,10 @@ struct RawlogConfig
     /** Opens `path` where it is a recording of another format; empty: it is a rawlog. Then the
      * measurements are those of the rawlog that an import of it would write. */
     OpenItems open;
+    /** For a log that is being written. A stamp that follows the one before within a second is then
+     * taken as good at once. Where all stamps are good, what is given out is the same as without.
+     */
+    WaitForGrowth wait_for_growth;
 };
 
 /** Whether a file begins with an object of a rawlog, gz or plain. */

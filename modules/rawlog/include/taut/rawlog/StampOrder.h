@@ -24,6 +24,14 @@ class StampOrder
         Lidar
     };
 
+    enum class Judge
+    {
+        Later,  //!< always by those after it too
+        AtOnce  //!< a stamp within a second after the one before is good; the others later
+    };
+
+    explicit StampOrder(Judge judge = Judge::Later) : judge_(judge) {}
+
     enum class Verdict
     {
         Good,     //!< later than the one before, as far as can be helped
@@ -81,6 +89,7 @@ class StampOrder
     };
 
     Stream& streamOf(Sensor sensor) { return streams_[static_cast<std::size_t>(sensor)]; }
+    bool follows(const Entry& front) const;
     Entries pendingOf(Sensor sensor);
     bool isOutlier(const Entries& own) const;
     bool isSetBack(const Entries& own, std::size_t at, Time peak) const;
@@ -90,6 +99,7 @@ class StampOrder
     Entry* lateOne(const Entries& own) const;
     Judged give(Entry& entry, Verdict verdict, Duration amount);
 
+    Judge judge_;
     std::deque<Entry> queue_;
     std::array<Stream, 2> streams_;
     std::size_t next_id_ = 0;
