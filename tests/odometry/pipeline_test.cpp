@@ -81,7 +81,7 @@ struct Outcome
 /** Feeds both streams in the order of time, as a player would. */
 Outcome run(
     const Streams& streams, const std::string& estimation = "{}", int threads = 1,
-    bool keep_undistorted = false, const std::string& on_motion = "start")
+    bool keep_undistorted = false, const std::string& on_motion = "start", double share = 1)
 {
     registerAll();
     ConfigSection root(parseYaml(
@@ -108,6 +108,7 @@ Outcome run(
             else if (const auto* recovered = std::get_if<Recovered>(&event))
                 out.recovered.push_back(*recovered);
         });
+    pipeline.setShare(share);
     auto sample = streams.imu.begin();
     for (const Scan& scan : streams.scans)
     {
@@ -734,4 +735,18 @@ TEST(Pipeline, HasNothingToSayOfAnEmptyRecording)
     Streams no_scans = hand();
     no_scans.scans.clear();
     EXPECT_TRUE(run(no_scans).results.empty());
+}
+
+TEST(Pipeline, UsesAShareOfEachScanWhereItIsToldTo)
+{
+    const Outcome all = run(hand()), half = run(hand(), "{}", 1, false, "start", 0.5);
+    ASSERT_EQ(half.results.size(), all.results.size());
+    ASSERT_GT(all.results[0].report.features, 500);
+    EXPECT_NEAR(half.results[0].report.features, 0.5 * all.results[0].report.features, 1);
+    EXPECT_NEAR(
+        static_cast<double>(half.results[0].points.size()),
+        0.5 * static_cast<double>(all.results[0].points.size()), 2);
+    EXPECT_LT(half.error(hand().recording), 0.02);
+    // So few are left that fewer would not do.
+    EXPECT_GE(run(hand(), "{}", 1, false, "start", 0.001).results[0].report.features, 200);
 }

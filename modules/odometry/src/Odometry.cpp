@@ -19,6 +19,8 @@ namespace
 // Weight of a scan in what is usual, and that of one that is doubtful.
 constexpr double kFitMemory = 0.1;
 constexpr double kDoubtMemory = 0.01;
+// Fewer features are not left however short the time is.
+constexpr std::size_t kFewestFeatures = 200;
 
 /** [rad/s] by which the rate may differ from that of the sweep before the IMU fell silent. */
 constexpr double kRateSigma = 2;
@@ -28,6 +30,16 @@ std::array<double, 3> eigenvaluesOf(const Matrix3d& information)
     const Vector3d e =
         Eigen::SelfAdjointEigenSolver<Matrix3d>(information, Eigen::EigenvaluesOnly).eigenvalues();
     return {e[0], e[1], e[2]};
+}
+
+/* A share of the features, evenly over the sweep. */
+void keepShare(double share, Features& features)
+{
+    const std::size_t n = features.points.size();
+    const auto wanted = static_cast<std::size_t>(share * static_cast<double>(n));
+    const std::size_t kept = std::max(wanted, std::min(n, kFewestFeatures));
+    for (std::size_t i = 0; i < kept; i++) features.points[i] = features.points[i * n / kept];
+    features.points.resize(kept);
 }
 }  // namespace
 
@@ -112,7 +124,8 @@ ScanResult Odometry::process(const Scan& raw, const ImuSamples* imu)
     result.sweep.prior_end = prior;
     watch.stage(result.report.times.preintegrate);
 
-    const Features features = extractor_->extract(scan, warn_);
+    Features features = extractor_->extract(scan, warn_);
+    if (share_ < 1) keepShare(share_, features);
     result.report.features = static_cast<int>(features.points.size());
     watch.stage(result.report.times.extract);
 
@@ -244,7 +257,13 @@ void Odometry::insert(const Scan& scan, const SweepPath& path, ScanResult& resul
     map_->slide(previous_.state.T_world_imu.p);
     if (scan.points.empty()) return;
     Scan& raw = result.sweep.scan;
-    raw = thinned(scan, static_cast<std::size_t>(config_.insert.max_points));
+    auto most = static_cast<std::size_t>(config_.insert.max_points);
+    if (share_ < 1)
+    {
+        const auto n = static_cast<double>(std::min(most, scan.points.size()));
+        most = static_cast<std::size_t>(std::max(1.0, std::floor(share_ * n)));
+    }
+    raw = thinned(scan, most);
     const std::size_t kept = raw.points.size();
     const auto [first, last] = std::minmax_element(
         scan.points.begin(), scan.points.end(),

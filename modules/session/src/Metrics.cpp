@@ -61,6 +61,25 @@ nlohmann::ordered_json slamOf(const Metrics::Summary& s)
         {"moved_points", s.moved_points},
         {"moved_s", s.moved_seconds}};
 }
+nlohmann::ordered_json liveOf(const LiveSummary& live)
+{
+    nlohmann::ordered_json j{
+        {"load", live.load},
+        {"scans", live.scans},
+        {"late_scans", live.late},
+        {"caught_up_s", live.caught_up},
+        {"latency_ms",
+         {{"median", 1e3 * live.median},
+          {"percentile_99", 1e3 * live.percentile_99},
+          {"worst", 1e3 * live.worst}}}};
+    j["reduced"] = nlohmann::ordered_json::array();
+    for (const LiveSummary::Reduced& r : live.reduced)
+        j["reduced"].push_back(
+            {{"from", static_cast<double>(r.from) * 1e-9},
+             {"to", static_cast<double>(r.to) * 1e-9},
+             {"share", r.share}});
+    return j;
+}
 }  // namespace
 
 std::size_t residentMemory(bool peak)
@@ -138,6 +157,7 @@ std::string Metrics::json(const Summary& s, const WarningLog& warnings) const
         {"window_cells", s.map_cells},
         {"key_scans", s.key_scans},
         {"occupancy_resolution_m", s.occupancy_resolution}};
+    if (s.live) j["live"] = liveOf(*s.live);
     if (s.with_slam) j["slam"] = slamOf(s);
     j["frames"] =
         "trajectory: pose of the IMU body in the world (z up, origin at the first state), at the "

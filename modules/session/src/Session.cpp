@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "DiskReserve.h"
+#include "TaskQueue.h"
 #include "drawViews.h"
 #include "takeOutMovedThings.h"
 #include "taut/core/format.h"
@@ -39,9 +40,13 @@ double secondsSince(std::chrono::steady_clock::time_point begin)
 }
 
 /** Warnings which say that a part of the input was not used, or not as it is. */
-constexpr const char* kUnused[] = {"late_imu",      "imu_late",          "imu_silent",
-                                   "imu_not_found", "lidar_ended",       "place_unknown",
-                                   "clock_back",    "extrinsic_rotation"};
+constexpr const char* kUnused[] = {
+    "late_imu",    "imu_late",      "imu_silent", "imu_not_found",
+    "lidar_ended", "place_unknown", "clock_back", "extrinsic_rotation",
+    "too_slow"};
+
+/** Scans whose points wait for the mapper in memory, in a live run. */
+constexpr std::size_t kMostBeside = 200;
 }  // namespace
 
 Session::Session(const SessionConfig& config, WarningLog& warnings, EventSink events)
@@ -68,10 +73,19 @@ Session::Session(const SessionConfig& config, WarningLog& warnings, EventSink ev
     removeLoopResults(config_.folder);
     if (config_.method.slam.loops)
     {
+        if (config_.live) mapper_executor_ = std::make_unique<Executor>(1);
         mapper_ = std::make_unique<Mapper>(
-            config_.method.slam, config_.folder + "/submaps", executor_, warnings_.sink());
+            config_.method.slam, config_.folder + "/submaps",
+            config_.live ? *mapper_executor_ : executor_,
+            config_.live ? [this](const Warning& w)
+            {
+                const std::lock_guard lock(mapper_warnings_mutex_);
+                mapper_warnings_.push_back(w);
+            } : warnings_.sink());
         if (config_.known_map) mapper_->use(*config_.known_map);
+        if (config_.live) beside_ = std::make_unique<TaskQueue>(kMostBeside);
     }
+    if (config_.live) watch_.emplace(*config_.live);
 }
 
 Session::~Session() = default;
@@ -87,10 +101,62 @@ void Session::add(Measurement measurement)
 void Session::take(const Event& event)
 {
     doubts_.add(event);
+    const auto* estimated = std::get_if<Estimated>(&event);
+    if (watch_ && estimated != nullptr) watchLoad(*estimated);
+    // A pose that is waited for is told before it is written.
+    if (config_.live && events_) events_(event);
     written_ = false;
     write(event);
+    passWarningsOn();
     written_ = true;
-    if (events_) events_(event);
+    if (!config_.live && events_) events_(event);
+}
+
+void Session::watchLoad(const Estimated& estimated)
+{
+    const auto now = std::chrono::steady_clock::now();
+    const double work =
+        std::chrono::duration<double>(now - last_estimated_).count() - (idle_seconds_ - last_idle_);
+    last_estimated_ = now;
+    last_idle_ = idle_seconds_;
+    const double before = watch_->control().share();
+    const auto share = watch_->add(estimated.scan, work);
+    if (!share) return;
+    pipeline_.setShare(*share);
+    const double load = watch_->control().load(), late = watch_->age().value_or(0);
+    if (*share < before)
+        warnings_.add(
+            {estimated.scan.end, "too_slow",
+             format(
+                 "%.0f %% of each scan is used from here on: the work takes %.0f %% of the time, "
+                 "poses are %.2f s late",
+                 100 * *share, 100 * load, late)});
+    else if (*share == 1)
+        warnings_.add(
+            {estimated.scan.end, "fast_enough",
+             format(
+                 "all of each scan is used again: the work takes %.0f %% of the time",
+                 100 * load)});
+}
+
+/** A step of the mapper: now, or in the thread beside. */
+void Session::tellMapper(std::function<void()> step)
+{
+    if (beside_)
+        beside_->post(std::move(step));
+    else
+        step();
+}
+
+void Session::passWarningsOn()
+{
+    if (!beside_) return;
+    std::vector<Warning> told;
+    {
+        const std::lock_guard lock(mapper_warnings_mutex_);
+        told.swap(mapper_warnings_);
+    }
+    for (const Warning& w : told) warnings_.add(w);
 }
 
 void Session::write(const Event& event)
@@ -116,8 +182,10 @@ void Session::write(const Event& event)
     {
         // What the IMU alone bridges is in the covariance; a wrong match is not.
         const auto* lost = std::get_if<Lost>(&event);
-        if (lost != nullptr && lost->cause == "pose_doubtful") mapper_->setDoubt(true);
-        if (std::holds_alternative<Recovered>(event)) mapper_->setDoubt(false);
+        if (lost != nullptr && lost->cause == "pose_doubtful")
+            tellMapper([this] { mapper_->setDoubt(true); });
+        if (std::holds_alternative<Recovered>(event))
+            tellMapper([this] { mapper_->setDoubt(false); });
     }
 }
 
@@ -126,7 +194,7 @@ void Session::takeRefined(const Refined& refined)
     const bool for_files = config_.method.refined;
     if (!for_files && !mapper_) return;
     const NavState& x = refined.state;
-    const std::vector<Vector3d> points = refined.points();
+    std::vector<Vector3d> points = refined.points();
     if (for_files)
     {
         path_->add({x.t, x.T_world_imu});
@@ -134,8 +202,14 @@ void Session::takeRefined(const Refined& refined)
     }
     if (!mapper_) return;
     if (records_.empty())
-        mapper_->start({refined.sweep.begin, pipeline_.initialization()->estimate.covariance});
-    mapper_->add({x, covariance_}, points, refined.sweep.T_imu_lidar);
+        tellMapper(
+            [this, first = NavEstimate{
+                       refined.sweep.begin, pipeline_.initialization()->estimate.covariance}] {
+                mapper_->start(first);
+            });
+    tellMapper([this, estimate = NavEstimate{x, covariance_}, points = std::move(points),
+                T_imu_lidar = refined.sweep.T_imu_lidar]
+               { mapper_->add(estimate, points, T_imu_lidar); });
     records_.emplace_back(refined.sweep, x);
 }
 
@@ -147,14 +221,21 @@ SessionOutcome Session::run(
     go_on_ = go_on;
     const auto begin = std::chrono::steady_clock::now();
     attempt([&] { interrupted = !processAll(log, go_on); });
-    wall_seconds_ = secondsSince(begin);
+    wall_seconds_ = secondsSince(begin) - (config_.live ? idle_seconds_ : 0);
     return finish(log.progress(), log.incomplete(), interrupted);
 }
 
 /** False: it was interrupted. */
 bool Session::processAll(MeasurementStream& log, const std::function<bool(double)>& go_on)
 {
-    while (std::optional<Measurement> m = log.next())
+    const auto next = [&]
+    {
+        const auto begin = std::chrono::steady_clock::now();
+        std::optional<Measurement> m = log.next();
+        idle_seconds_ += secondsSince(begin);
+        return m;
+    };
+    while (std::optional<Measurement> m = next())
     {
         add(std::move(*m));
         if (!go_on(log.progress().fraction())) return false;
@@ -185,6 +266,9 @@ SessionOutcome Session::finish(const StreamProgress& log, bool incomplete, bool 
     SessionOutcome outcome;
     // Where the disk took no more, what the pipeline still holds back has no place either.
     if (written_) attempt([&] { pipeline_.finish(); });
+    if (beside_) attempt([&] { beside_->drain(); });
+    passWarningsOn();
+    beside_.reset();
     attempt([&] { path_->close(); });
     attempt([&] { files_.close(); });
     attempt([&] { map_->finish(warnings_.sink()); });
@@ -208,6 +292,7 @@ SessionOutcome Session::finish(const StreamProgress& log, bool incomplete, bool 
     if (mapper_) outcome.corrected = mapper_->moved();
     outcome.undistorted_again = undistorted_again_;
     outcome.partly = interrupted || usedPartly(log, incomplete);
+    if (watch_) outcome.live = watch_->summary();
     return outcome;
 }
 
@@ -356,6 +441,7 @@ void Session::writeMetrics(const StreamProgress& log, bool incomplete, bool inte
     s.threads = config_.threads;
     s.wall_seconds = wall_seconds_;
     s.doubts = doubts_.all();
+    if (watch_) s.live = watch_->summary();
     s.with_slam = mapper_ != nullptr;
     s.second_pass = undistorted_again_;
     s.second_pass_seconds = second_pass_seconds_;

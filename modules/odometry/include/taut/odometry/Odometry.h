@@ -74,6 +74,10 @@ class Odometry
      * scan does not end after time(). */
     ScanResult process(const Scan& scan, const ImuSamples* imu);
 
+    /** From the next scan on, matches and inserts this share of what it would, (0, 1]: where there
+     * is no time for all of it. At 1, where it begins, nothing is left out. */
+    void setShare(double share) { share_ = share; }
+
     /** Cells or points in the local map. */
     std::size_t mapSize() const { return map_->size(); }
 
@@ -99,6 +103,7 @@ class Odometry
     WarningSink warn_;
     ImuNoise noise_;
     bool started_ = false;
+    double share_ = 1;
     NavPrior previous_;
     Rest rest_;
     Vector3d previous_rate_ = Vector3d::Zero();

@@ -34,6 +34,8 @@ class Pipeline
     const std::optional<Initialization>& initialization() const { return initialization_; }
     /** Scans that wait for the IMU or for a start. */
     std::size_t waiting() const;
+    /** See Odometry::setShare(). May be called from within the events. */
+    void setShare(double share) { odometry_.setShare(share); }
     /** Cells or points in the local map. */
     std::size_t mapSize() const { return odometry_.mapSize(); }
 

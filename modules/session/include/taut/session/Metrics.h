@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "taut/odometry/Odometry.h"
 #include "taut/rawlog/RawlogSource.h"
 #include "taut/session/Doubts.h"
+#include "taut/session/LiveWatch.h"
 
 namespace taut
 {
@@ -41,8 +43,9 @@ class Metrics
         double slam_seconds = 0;         //!< of wall_seconds: on loops and the graph
         double second_pass_seconds = 0;  //!< of wall_seconds
         bool second_pass = false;        //!< every point was undistorted again
-        std::size_t moved_points = 0;    //!< of things that left: in map_moved.ply
-        double moved_seconds = 0;        //!< spent to find them
+        std::optional<LiveSummary> live;
+        std::size_t moved_points = 0;  //!< of things that left: in map_moved.ply
+        double moved_seconds = 0;      //!< spent to find them
     };
     /** JSON text. Hashes the input: reads it once. */
     std::string json(const Summary& summary, const WarningLog& warnings) const;

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
+#include <mutex>
 #include <string>
 
 #include "taut/core/WarningLog.h"
 #include "taut/odometry/Pipeline.h"
 #include "taut/rawlog/RawlogSource.h"
 #include "taut/session/Doubts.h"
+#include "taut/session/LiveWatch.h"
 #include "taut/session/Method.h"
 #include "taut/session/Metrics.h"
 #include "taut/session/ResultFiles.h"
@@ -17,6 +20,7 @@
 namespace taut
 {
 class DiskReserve;
+class TaskQueue;
 
 struct SessionConfig
 {
@@ -30,6 +34,9 @@ struct SessionConfig
     bool pictures = true;
     bool report = true;  //!< write report.html, of the other results
     Trajectory truth;    //!< that it is to compare the run with; empty: none
+    /** The measurements come as they are made. The poses are then told before anything else is done
+     * with them: submaps and loops are worked on in a thread beside. The results are the same. */
+    std::optional<LiveConfig> live;
 };
 
 /** How a session ended. What was computed is on the disk in any case, as far as it takes it. */
@@ -44,6 +51,7 @@ struct SessionOutcome
     bool corrected = false;              //!< the path is not the odometry's any more
     bool undistorted_again = false;      //!< every point, along the path that the loops corrected
     bool pictures_failed = false, report_failed = false;
+    std::optional<LiveSummary> live;  //!< of a live run
     bool interrupted = false;
     /** A part of the input was not used, or a stretch of the pose is in doubt: metrics.json tells
      * which. */
@@ -92,11 +100,16 @@ class Session
 
     int scans() const { return metrics_.scans(); }
     double duration() const { return metrics_.duration(); }  //!< [s] estimated so far
+    /** Of a live run: how late the last pose was [s]. */
+    std::optional<double> age() const { return watch_ ? watch_->age() : std::nullopt; }
 
  private:
     void take(const Event& event);
     void write(const Event& event);
     void takeRefined(const Refined& refined);
+    void watchLoad(const Estimated& estimated);
+    void tellMapper(std::function<void()> step);
+    void passWarningsOn();
     void closeLoops();
     bool streamAgain(const std::vector<SweepRecord>& records, MapExport& map);
     void takeCorrectedPath();
@@ -120,7 +133,11 @@ class Session
     ResultFiles files_;
     Metrics metrics_;
     Doubts doubts_;
-    std::unique_ptr<Mapper> mapper_;  // null: loops are not asked for
+    std::unique_ptr<Executor> mapper_executor_;  // of a live run
+    std::unique_ptr<Mapper> mapper_;             // null: loops are not asked for
+    std::mutex mapper_warnings_mutex_;
+    std::vector<Warning> mapper_warnings_;  // of the thread beside
+    std::unique_ptr<TaskQueue> beside_;     // of a live run: the only one to use the mapper
     std::vector<SweepRecord> records_;
     NavState::Matrix covariance_ = NavState::Matrix::Zero();  // of the last estimate
     Reopen reopen_;
@@ -128,6 +145,9 @@ class Session
     bool second_pass_ = false, undistorted_again_ = false, interrupted_again_ = false;
     double second_pass_seconds_ = 0, moved_seconds_ = 0;
     std::size_t moved_points_ = 0;
+    std::optional<LiveWatch> watch_;
+    double idle_seconds_ = 0, last_idle_ = 0;  // waited for measurements
+    std::chrono::steady_clock::time_point last_estimated_;
     Pipeline pipeline_;
     double wall_seconds_ = 0;
     std::string failure_;  // the first; empty: there was none
