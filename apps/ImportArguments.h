@@ -3,7 +3,6 @@
 #include <string>
 
 #include "CommandLine.h"
-#include "scanTimesOf.h"
 #include "taut/importing/ImportOptions.h"
 
 namespace taut
@@ -39,11 +38,6 @@ class ImportArguments
               "Clouds: which end of a sweep their stamp is, start or end (default: as the times of "
               "the points, the IMU or the recorder tell)",
               false, "", "start|end", cmd),
-          scan_times_(
-              "", "scan-times",
-              "Scans without times of their points: azimuth tells them, or none (default auto: the "
-              "azimuth of a sensor that turns, unless the scans are undistorted already)",
-              false, "auto", "auto|azimuth|none", cmd),
           lidar_id_(
               "", "lidar-id",
               "Bags with several LiDARs on one topic: lidar_id (Livox) or frame_id of the one to "
@@ -73,7 +67,6 @@ class ImportArguments
             o.scan_stamp = ScanStamp::End;
         else if (!stamp.empty())
             throw UsageError("--scan-stamp is start or end, not '" + stamp + "'");
-        o.scan_times = scanTimesOf(scan_times_.getValue());
         o.lidar_id = lidar_id_.getValue();
         o.time_field = time_field_.getValue();
         return o;
@@ -92,7 +85,6 @@ class ImportArguments
  private:
     TCLAP::ValueArg<std::string> ouster_, hesai_;
     TCLAP::SwitchArg capture_;
-    TCLAP::ValueArg<std::string> lidar_topic_, imu_topic_, scan_stamp_, scan_times_, lidar_id_,
-        time_field_;
+    TCLAP::ValueArg<std::string> lidar_topic_, imu_topic_, scan_stamp_, lidar_id_, time_field_;
 };
 }  // namespace taut

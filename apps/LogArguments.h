@@ -5,18 +5,18 @@
 #include <string>
 
 #include "ImportArguments.h"
+#include "scanTimesOf.h"
 #include "taut/importing/Import.h"
 #include "taut/importing/openImportSource.h"
 
 namespace taut
 {
-/** The options of every program that reads a recording: rig, sensors, part of the time, and how a
- * recording that is no rawlog is to be read. */
-class LogArguments
+/** The options that say which sensors are used, and what of them the log does not tell. */
+class SensorArguments
 {
  public:
     /** Adds them to the command line, which must be parsed before any of the following is asked. */
-    explicit LogArguments(TCLAP::CmdLine& cmd)
+    explicit SensorArguments(TCLAP::CmdLine& cmd)
         : rig_(
               "r", "rig", "Rig file: poses, noise and clocks of the sensors, over those in the log",
               false, "", "RIG.yaml", cmd),
@@ -28,6 +28,34 @@ class LogArguments
               "", "imu",
               "Rawlogs: sensor label of the IMU, a regular expression (default: the only one)",
               false, "", "REGEX", cmd),
+          times_(
+              "", "scan-times",
+              "Scans without times of their points: azimuth tells them, or none (default auto: the "
+              "azimuth of a sensor that turns, unless the scans are undistorted already)",
+              false, "auto", "auto|azimuth|none", cmd)
+    {
+    }
+
+    const std::string& rig() { return rig_.getValue(); }
+    const std::string& lidarLabel() { return lidar_.getValue(); }
+    const std::string& imuLabel() { return imu_.getValue(); }
+    ScanTimes scanTimes() { return scanTimesOf(times_.getValue()); }
+
+ protected:
+    bool choosesByLabel() const { return lidar_.isSet() || imu_.isSet(); }
+
+ private:
+    TCLAP::ValueArg<std::string> rig_, lidar_, imu_, times_;
+};
+
+/** The options of every program that reads a recording: rig, sensors, part of the time, and how a
+ * recording that is no rawlog is to be read. */
+class LogArguments : public SensorArguments
+{
+ public:
+    /** As SensorArguments. */
+    explicit LogArguments(TCLAP::CmdLine& cmd)
+        : SensorArguments(cmd),
           from_(
               "", "from-time", "Leave out what is earlier: seconds since the start of the log",
               false, 0, "SECONDS", cmd),
@@ -37,24 +65,22 @@ class LogArguments
     {
     }
 
-    const std::string& rig() { return rig_.getValue(); }
-
     /** What the options say of the recording in `path`. Throws UsageError if the part of the time
      * is none or an option is for another kind of recording, ConfigError for the rig file. */
     RawlogConfig log(const std::string& path)
     {
         RawlogConfig config;
         config.path = path;
-        config.lidar_label = lidar_.getValue();
-        config.imu_label = imu_.getValue();
+        config.lidar_label = lidarLabel();
+        config.imu_label = imuLabel();
         config.to_time = toTime();
         config.from_time = from_.getValue();
         if (!rig().empty()) config.rig = loadRig(rig());
-        const ImportOptions options = import_.options();
-        config.scan_times = options.scan_times;
+        ImportOptions options = import_.options();
+        options.scan_times = config.scan_times = scanTimes();
         if (canBeImported(path))
         {
-            if (lidar_.isSet() || imu_.isSet())
+            if (choosesByLabel())
                 throw UsageError(
                     "--lidar and --imu choose by label in a rawlog, which '" + path +
                     "' is not; in a bag --lidar-topic and --imu-topic do");
@@ -79,7 +105,6 @@ class LogArguments
         return to_.getValue();
     }
 
-    TCLAP::ValueArg<std::string> rig_, lidar_, imu_;
     TCLAP::ValueArg<double> from_, to_;
     ImportArguments import_;
 };

@@ -63,13 +63,23 @@ void Progress::draw(double fraction, const std::string& numbers)
     const double left = fraction > 1e-3 ? wall * (1 - fraction) / fraction : 0;
     const std::string line =
         format("%5.1f %%  ", 100 * fraction) + numbers + format("  ETA %.0f s", left);
+    show(mrpt::system::progress(fraction, 20) + " ", line);
+}
+
+void Progress::update(const std::string& line)
+{
+    if (isDue()) show("", line);
+}
+
+/* `begin` on a terminal alone. */
+void Progress::show(const std::string& begin, const std::string& line)
+{
     if (!terminal_)
     {
         std::fprintf(stderr, "%s\n", line.c_str());
         return;
     }
-    std::fprintf(
-        stderr, "\r\033[K%s %s", mrpt::system::progress(fraction, 20).c_str(), line.c_str());
+    std::fprintf(stderr, "\r\033[K%s%s", begin.c_str(), line.c_str());
     std::fflush(stderr);
     drawn_ = true;
 }

@@ -19,12 +19,16 @@ class Progress
     /** The same of the second pass, which begins with the first call. */
     void update(double fraction);
 
+    /** Of what has no end that is known. */
+    void update(const std::string& line);
+
     /** Takes the line off the terminal, so that something else can be printed. */
     void clear();
 
  private:
     bool isDue();
     void draw(double fraction, const std::string& numbers);
+    void show(const std::string& begin, const std::string& line);
 
     using Clock = std::chrono::steady_clock;
     bool show_, terminal_, drawn_ = false;

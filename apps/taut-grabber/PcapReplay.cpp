@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "EndOfReplay.h"
 #include "taut/importing/openImportSource.h"
 
 IMPLEMENTS_GENERIC_SENSOR(PcapReplay, taut)
@@ -93,10 +94,12 @@ void PcapReplay::waitForWriting()
 {
     const std::size_t left = unwritten_.count();
     if (left == 0)
-        throw std::runtime_error(
+        throw EndOfReplay(
             "end of '" + path_ + "': all of its " + std::to_string(scans()) + " scans and " +
-            std::to_string(samples()) + " IMU samples are written" +
-            (warned() == 0 ? "" : ", but the warnings tell what of the capture could not be used"));
+                std::to_string(samples()) + " IMU samples are written" +
+                (warned() == 0 ? ""
+                               : ", but the warnings tell what of the capture could not be used"),
+            warned() == 0);
     if (left != waiting_for_)
     {
         waiting_for_ = left;

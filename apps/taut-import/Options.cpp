@@ -1,6 +1,7 @@
 #include "Options.h"
 
 #include "../ImportArguments.h"
+#include "../scanTimesOf.h"
 
 namespace taut
 {
@@ -25,6 +26,11 @@ bool parseOptions(int argc, char** argv, Options& o)
         "", "imu-label", "Sensor label of the IMU in the rawlog (default: IMU)", false, "IMU",
         "LABEL", cmd);
     ImportArguments import(cmd);
+    TCLAP::ValueArg<std::string> scan_times(
+        "", "scan-times",
+        "Clouds without times of their points: azimuth tells them, or none (default auto: the "
+        "azimuth of a sensor that turns, unless the clouds are undistorted already)",
+        false, "auto", "auto|azimuth|none", cmd);
     TCLAP::SwitchArg overwrite("w", "overwrite", "Replace a rawlog that is there", cmd);
     TCLAP::SwitchArg quiet("q", "quiet", "Errors and warnings only", cmd);
     const Usage usage{
@@ -37,6 +43,7 @@ bool parseOptions(int argc, char** argv, Options& o)
     o.lidar_label = lidar.getValue();
     o.imu_label = imu.getValue();
     o.import = import.options();
+    o.import.scan_times = scanTimesOf(scan_times.getValue());
     o.overwrite = overwrite.getValue();
     o.quiet = quiet.getValue();
     return true;

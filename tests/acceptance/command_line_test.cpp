@@ -158,6 +158,7 @@ TEST_P(EveryProgram, OutlivesAReaderWhoWentAway)
 
 const std::vector<Program> kPrograms{
     {"taut-slam", "argument RECORDING is required"},
+    {"taut-live", "option -o/--output is required"},
     {"taut-import", "argument SOURCE and option -o/--output are required"},
     {"taut-info", "argument RECORDING is required"},
     {"taut-merge", "argument RUN/ and option -o/--output are required"},

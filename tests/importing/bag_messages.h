@@ -124,7 +124,6 @@ inline Blob transformsMessage(const std::vector<TestTransform>& transforms, Test
 /** How a driver writes its clouds. */
 struct CloudStyle
 {
-    std::string frame = "os_lidar";
     std::string time_name = "t", time_type = "uint32";
     double time_unit = 1;      //!< [ns]
     bool absolute = false;     //!< times since 1970, else since the stamp
