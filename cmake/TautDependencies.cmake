@@ -37,11 +37,11 @@ set_target_properties(PCAP::PCAP PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${PCA
 find_path(THREE_FOLDER examples/js/controls/OrbitControls.js REQUIRED
           PATHS /usr/share/javascript/three /usr/share/nodejs/three NO_DEFAULT_PATH)
 find_package(embree 3 QUIET) # libembree-dev 3.13.5; optional: simulation
-# libmrpt-hwdrivers-dev 2.5.8, optional: drivers for rawlog-grabber (mrpt-apps), which the tests run
+# libmrpt-hwdrivers-dev 2.5.8, optional: sensors of taut-live; drivers for rawlog-grabber (mrpt-apps), which the tests run
 find_package(mrpt-hwdrivers 2.5 QUIET)
 if(NOT mrpt-hwdrivers_FOUND)
   message(STATUS "mrpt-hwdrivers (Debian: libmrpt-hwdrivers-dev) is absent: libtaut-grabber.so is not "
-                 "built (cmake/install-dependencies.sh --grabber installs it)")
+                 "built, taut-live plays recordings alone (cmake/install-dependencies.sh --grabber installs it)")
 endif()
 
 # Strict warnings, on an interface target so that no directory forgets them.
