@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "../LogArguments.h"
+#include "../SensorArguments.h"
 
 namespace taut
 {

@@ -68,7 +68,7 @@ std::optional<RawlogReplay::Item> RawlogReplay::next()
     return {};
 }
 
-const std::string& RawlogReplay::damage() const
+std::string RawlogReplay::damage() const
 {
     return impl_->reader.damage();
 }

@@ -33,7 +33,7 @@ class RawlogReplay
 
     std::size_t leftOut() const { return left_out_; }  //!< of other sensors
     /** Why the reading ended before the end of the log; empty if it did not. */
-    const std::string& damage() const;
+    std::string damage() const;
 
  private:
     struct Impl;
