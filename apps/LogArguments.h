@@ -48,6 +48,7 @@ class LogArguments : public SensorArguments
                     "--lidar and --imu choose by label in a rawlog, which '" + path +
                     "' is not; in a bag --lidar-topic and --imu-topic do");
             readByImport(config, options);
+            config.scan_times = ScanTimes::None;  // the import has told them
         }
         else if (!import_.given().empty() && std::filesystem::exists(path))
         {

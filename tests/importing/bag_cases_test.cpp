@@ -176,6 +176,7 @@ TEST_F(AReportedBag, WithSeveralUnknownTimesNamesThemAndAsks)
     options.time_field = "shot_time";
     expectSame(import(path, options).scans, scans_, 0);
     options.time_field = "none";
+    options.scan_times = ScanTimes::None;
     EXPECT_TRUE(import(path, options).scans.at(0).already_undistorted);
     options.time_field = "shot_tim";
     EXPECT_THAT(failure(path, options), HasSubstr("'shot_tim' is no field of the points"));

@@ -14,14 +14,19 @@ namespace
 class ARawlogWithoutTimes : public testing::Test
 {
  protected:
-    ARawlogWithoutTimes()
+    ARawlogWithoutTimes() { write(Recording().imu()); }
+
+    void write(const ImuSamples& imu)
     {
         RawlogWriter writer(path_);
+        auto sample = imu.begin();
         for (Scan scan : scans_)
         {
+            for (; sample != imu.end() && sample->t < scan.stamp; ++sample) writer.write(*sample);
             for (LidarPoint& point : scan.points) point.offset = 0;
             writer.write(scan);
         }
+        for (; sample != imu.end(); ++sample) writer.write(*sample);
         writer.close();
     }
 
@@ -33,7 +38,7 @@ class ARawlogWithoutTimes : public testing::Test
         RawlogSource source(config, warnings_.sink());
         std::vector<Scan> scans;
         while (auto measurement = source.next())
-            scans.push_back(std::move(std::get<Scan>(*measurement)));
+            if (auto* scan = std::get_if<Scan>(&*measurement)) scans.push_back(std::move(*scan));
         return scans;
     }
 
@@ -59,6 +64,16 @@ TEST_F(ARawlogWithoutTimes, GetsThemFromTheAzimuthOfItsPoints)
                     scans[k].timeOf(scans[k].points[i]) - scans_[k].timeOf(scans_[k].points[i])),
                 0, 1.5e-3);
     }
+}
+
+TEST_F(ARawlogWithoutTimes, IsTakenAsUndistortedWhereNoGyroTellsOtherwise)
+{
+    write({});
+    const auto scans = read(ScanTimes::Auto);
+    ASSERT_EQ(scans.size(), scans_.size());
+    EXPECT_TRUE(scans[20].already_undistorted);
+    EXPECT_EQ(warnings_.count("scan_undistorted"), 1U);
+    EXPECT_FALSE(read(ScanTimes::Azimuth)[20].already_undistorted);
 }
 
 TEST_F(ARawlogWithoutTimes, StaysAsItIsIfToldSo)

@@ -136,7 +136,9 @@ class PlyNumbers
             {
                 elements.emplace_back();
                 if (!(s >> elements.back().name >> elements.back().count))
-                    fail(path_, "its header has an element without a name or a number");
+                    fail(
+                        path_,
+                        "its header has an element without a name or a number: '" + line + "'");
             }
             else if (word == "property" && !elements.empty())
             {

@@ -476,6 +476,10 @@ void RawlogSource::Impl::learnTimes(Time t)
             // Whatever ends the reading will do so here too, and is told then.
         }
     completer->finishLearning();
+    // A rawlog cannot say that its sweeps are undistorted; where a gyro turned as they did, they
+    // are not.
+    if (config.scan_times == ScanTimes::Auto && !completer->stampIsEnd())
+        completer.emplace(ScanTimes::None);
     const bool is_end = completer->stampIsEnd().value_or(false);
     completer->setStampIsEnd(is_end);
     const auto& found = completer->findings();
