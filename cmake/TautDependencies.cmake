@@ -15,6 +15,7 @@ foreach(lib lz4 zstd)
 endforeach()
 find_path(lz4_INCLUDE_DIR lz4frame.h REQUIRED)
 find_path(zstd_INCLUDE_DIR zstd.h REQUIRED)
+find_package(liblzf 3.6 REQUIRED CONFIG) # liblzf-dev 3.6: compressed PCD files
 find_package(octomap 1.9 REQUIRED)      # liboctomap-dev 1.9.7
 find_package(NLopt 2.7 REQUIRED CONFIG) # libnlopt-cxx-dev 2.7.1
 find_package(nanoflann 1.4 REQUIRED)    # libnanoflann-dev 1.4.3

@@ -9,7 +9,7 @@ packages=(
   g++ cmake ninja-build pkg-config
   libeigen3-dev libmrpt-maps-dev libmrpt-opengl-dev libmrpt-tclap-dev
   libyaml-cpp-dev zlib1g-dev libnlopt-cxx-dev libnlopt-dev liboctomap-dev libosmesa6-dev libnanoflann-dev robin-map-dev
-  libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev
+  libbz2-dev liblz4-dev liblzf-dev libzstd-dev libsqlite3-dev
   libembree-dev libpcap-dev
   libgtest-dev libgmock-dev libbenchmark-dev nlohmann-json3-dev libssl-dev gnuplot-nox doxygen
   libjs-three

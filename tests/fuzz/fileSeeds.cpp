@@ -1,3 +1,4 @@
+#include <lzf.h>
 #include <zlib.h>
 
 #include "../graph/graphs.h"
@@ -37,6 +38,17 @@ std::string row(float x, double t)
     return bytes;
 }
 
+/** The data of a PCD file, compressed. */
+std::string packed(const std::string& data)
+{
+    std::string bytes(2 * data.size() + 100, '\0');
+    const std::uint32_t whole = static_cast<std::uint32_t>(data.size());
+    const std::uint32_t size =
+        lzf_compress(data.data(), whole, bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+    return std::string(reinterpret_cast<const char*>(&size), sizeof size) +
+           std::string(reinterpret_cast<const char*>(&whole), sizeof whole) + bytes.substr(0, size);
+}
+
 void addClouds(const Seeds& seeds)
 {
     const std::string ply =
@@ -51,6 +63,7 @@ void addClouds(const Seeds& seeds)
     seeds.add("ply", "binary", "ply\nformat binary_little_endian " + ply + binary);
     seeds.add("pcd", "text", pcd + "ascii\n" + text);
     seeds.add("pcd", "binary", pcd + "binary\n" + binary);
+    seeds.add("pcd", "compressed", pcd + "binary_compressed\n" + packed(std::string(42, '\1')));
     PlyPointWriter writer(seeds.file("ply", "map"));
     for (const float x : {0.f, 1.f, 2.f}) writer.append({{x, 2, 3}, 10 * x});
     writer.close();

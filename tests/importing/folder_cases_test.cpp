@@ -1,5 +1,6 @@
 /** What people's folders of clouds look like, after public reports. */
 #include <gmock/gmock.h>
+#include <lzf.h>
 
 #include <cmath>
 #include <cstring>
@@ -33,8 +34,10 @@ struct CloudStyle
     bool since_stamp = false;  //!< else absolute
     Duration clock_shift = 0;  //!< of absolute times
     bool single_precision = false;
-    std::size_t hole_every = 0;  //!< rows of NaN, as an organised cloud has them
-    std::size_t zero_every = 0;  //!< times of zero
+    std::size_t hole_every = 0;   //!< rows of NaN, as an organised cloud has them
+    bool timeless_holes = false;  //!< their times are NaN, too
+    bool compressed = false;      //!< of PCD files
+    std::size_t zero_every = 0;   //!< times of zero
     double intensity_scale = 1;
 };
 
@@ -89,8 +92,10 @@ class AReportedFolder : public testing::Test
             const Time t = style.since_stamp ? p.offset : scan.timeOf(p) + style.clock_shift;
             const bool zero = style.zero_every > 0 && i % style.zero_every == 0;
             const double time = zero ? 0
-                                     : static_cast<double>(t / 1'000'000'000) * (1e9 / style.unit) +
-                                           static_cast<double>(t % 1'000'000'000) / style.unit;
+                                : hole && style.timeless_holes
+                                    ? double{kNaN}
+                                    : static_cast<double>(t / 1'000'000'000) * (1e9 / style.unit) +
+                                          static_cast<double>(t % 1'000'000'000) / style.unit;
             for (int axis = 0; axis < 3; axis++) put(rows, hole ? kNaN : p.position[axis]);
             put(rows, static_cast<float>(style.intensity_scale * double{p.intensity}));
             put(rows, p.ring);
@@ -100,7 +105,29 @@ class AReportedFolder : public testing::Test
                 put(rows, time);
             n++;
         }
-        std::ofstream(path(name + style.ending), std::ios::binary) << header(style, n) << rows;
+        std::ofstream(path(name + style.ending), std::ios::binary)
+            << header(style, n) << (style.compressed ? compressed(rows, n) : rows);
+    }
+
+    /** Rows of x, y, z, intensity (4 bytes), ring (2) and, if timed, a time (8) as a compressed PCD
+     * file has them. */
+    static std::string compressed(const std::string& rows, std::size_t n)
+    {
+        std::string fields;
+        std::size_t begin = 0;
+        for (const std::size_t size : {4, 4, 4, 4, 2, 8})
+        {
+            for (std::size_t i = 0; i < n; i++) fields += rows.substr(i * 26 + begin, size);
+            begin += size;
+        }
+        std::string bytes(2 * fields.size(), '\0');
+        bytes.resize(lzf_compress(
+            fields.data(), static_cast<unsigned>(fields.size()), bytes.data(),
+            static_cast<unsigned>(bytes.size())));
+        std::string all;
+        put(all, static_cast<std::uint32_t>(bytes.size()));
+        put(all, static_cast<std::uint32_t>(fields.size()));
+        return all + bytes;
     }
 
     static std::string header(const CloudStyle& style, std::size_t n)
@@ -119,7 +146,8 @@ class AReportedFolder : public testing::Test
         return "VERSION 0.7\nFIELDS x y z intensity ring" + (timed ? " " + style.field : "") +
                "\nSIZE 4 4 4 4 2" + (timed ? bytes : "") + "\nTYPE F F F F U" +
                (timed ? " F" : "") + "\nCOUNT 1 1 1 1 1" + (timed ? " 1" : "") + "\nWIDTH " +
-               count + "\nHEIGHT 1\nPOINTS " + count + "\nDATA binary\n";
+               count + "\nHEIGHT 1\nPOINTS " + count + "\nDATA binary" +
+               (style.compressed ? "_compressed" : "") + "\n";
     }
 
     /** Named by the stamps in a unit [ns], or by numbers. */
@@ -268,6 +296,24 @@ TEST_F(AReportedFolder, OfOrganisedCloudsDropsRowsThatAreNoReturns)
         style.ending = ending;
         style.hole_every = 9;  // 11 %
         style.field = "t";
+        fs::remove_all(folder_ / "in");
+        fs::create_directories(folder_ / "in");
+        writeClouds(style);
+        const Imported all = import();
+        expectScans(all.scans, withoutEvery(9), 300);
+        EXPECT_TRUE(all.warnings.counts().empty());
+    }
+}
+
+TEST_F(AReportedFolder, OfCompressedOrganisedCloudsDropsRowsThatAreNoReturns)
+{
+    for (const std::string field : {"t", "timestamp"})
+    {
+        CloudStyle style;
+        style.field = field;
+        style.compressed = true;
+        style.hole_every = 9;
+        style.timeless_holes = true;
         fs::remove_all(folder_ / "in");
         fs::create_directories(folder_ / "in");
         writeClouds(style);

@@ -1,3 +1,6 @@
+#include <lzf.h>
+
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <map>
@@ -9,16 +12,60 @@
 
 namespace taut
 {
+namespace
+{
+/** What LZF makes of a byte at most: three bytes stand for 264. */
+constexpr std::size_t kMostExpansion = 88;
+}  // namespace
+
 PcdReader::PcdReader(const std::string& path) : path_(path), in_(path, std::ios::binary)
 {
     if (!in_) fail("cannot be opened");
     readHeader();
-    if (ascii_) return;
+    if (data_ == Data::Binary) checkBinary();
+    if (data_ == Data::Compressed) decompress();
+}
+
+void PcdReader::checkBinary()
+{
     const auto header = static_cast<std::uintmax_t>(in_.tellg());
     const std::uintmax_t points = (std::filesystem::file_size(path_) - header) / row_bytes_;
     if (points < size_)
         fail("ends after " + std::to_string(points) + " of " + std::to_string(size_) + " points");
     bytes_.resize(row_bytes_);
+}
+
+/* After the header: the compressed and the whole number of bytes, 32 bits each, then the data, in
+ * which each field of all points stands before the next field. */
+void PcdReader::decompress()
+{
+    if (size_ == 0) return;
+    const auto header = static_cast<std::uintmax_t>(in_.tellg());
+    std::array<std::uint32_t, 2> sizes{};
+    const std::uintmax_t left = std::filesystem::file_size(path_) - header;
+    if (left < sizeof sizes ||
+        !in_.read(
+            reinterpret_cast<char*>(sizes.data()), static_cast<std::streamsize>(sizeof sizes)))
+        fail("ends before the sizes of the compressed data");
+    const std::size_t compressed = sizes[0], whole = sizes[1];
+    if (compressed > left - sizeof sizes)
+        fail(
+            "ends after " + std::to_string(left - sizeof sizes) + " of " +
+            std::to_string(compressed) + " bytes of compressed data");
+    if (whole % row_bytes_ != 0 || whole / row_bytes_ != size_)
+        fail(
+            "states " + std::to_string(whole) + " bytes of data, but " + std::to_string(size_) +
+            " points of " + std::to_string(row_bytes_) + " bytes each");
+    if (whole > compressed * kMostExpansion)
+        fail(
+            "states " + std::to_string(whole) + " bytes of data, which " +
+            std::to_string(compressed) + " compressed bytes cannot hold");
+    std::vector<char> packed(compressed);
+    if (!in_.read(packed.data(), static_cast<std::streamsize>(compressed)))
+        fail("the compressed data cannot be read");
+    bytes_.resize(whole);
+    const unsigned int made = lzf_decompress(packed.data(), sizes[0], bytes_.data(), sizes[1]);
+    if (made != whole) fail("the compressed data are damaged");
 }
 
 void PcdReader::fail(const std::string& cause) const
@@ -53,8 +100,11 @@ void PcdReader::readHeader()
     size_ = number(entries["POINTS"][0]);
     setColumns(entries["FIELDS"], entries["SIZE"], entries["TYPE"], entries["COUNT"]);
     const std::string data = entries["DATA"].empty() ? "" : entries["DATA"][0];
-    ascii_ = data == "ascii";
-    if (!ascii_ && data != "binary")
+    if (data == "binary")
+        data_ = Data::Binary;
+    else if (data == "binary_compressed")
+        data_ = Data::Compressed;
+    else if (data != "ascii")
         fail("DATA '" + data + "' is not supported: save it as binary or ascii");
 }
 
@@ -67,7 +117,7 @@ void PcdReader::setColumns(
         fail("FIELDS, SIZE, TYPE and COUNT differ in length");
     for (std::size_t i = 0; i < n; i++)
     {
-        const Column column{types[i].front(), number(sizes[i])};
+        Column column{types[i].front(), number(sizes[i])};
         const bool is_float = column.type == 'F' && (column.bytes == 4 || column.bytes == 8);
         const bool is_whole =
             (column.type == 'I' || column.type == 'U') &&
@@ -76,8 +126,11 @@ void PcdReader::setColumns(
             fail("field '" + fields[i] + "' is of type " + types[i] + " and size " + sizes[i]);
         const std::size_t count = counts.empty() ? 1 : number(counts[i]);
         if (count > 1000) fail("field '" + fields[i] + "' has too many values");
+        column.before = row_bytes_;
+        column.step = count * column.bytes;
         for (std::size_t k = 0; k < count; k++)
         {
+            column.within = k * column.bytes;
             names_.push_back(k == 0 ? fields[i] : fields[i] + "[" + std::to_string(k) + "]");
             columns_.push_back(column);
             row_bytes_ += column.bytes;
@@ -90,10 +143,12 @@ bool PcdReader::next(std::vector<double>& row)
 {
     if (done_ == size_) return false;
     row.resize(columns_.size());
-    if (ascii_)
+    if (data_ == Data::Ascii)
         nextAscii(row);
-    else
+    else if (data_ == Data::Binary)
         nextBinary(row);
+    else
+        nextDecompressed(row);
     done_++;
     return true;
 }
@@ -115,6 +170,15 @@ void PcdReader::nextBinary(std::vector<double>& row)
     {
         row[i] = decode(columns_[i], p);
         p += columns_[i].bytes;
+    }
+}
+
+void PcdReader::nextDecompressed(std::vector<double>& row) const
+{
+    for (std::size_t i = 0; i < row.size(); i++)
+    {
+        const Column& c = columns_[i];
+        row[i] = decode(c, &bytes_[c.before * size_ + done_ * c.step + c.within]);
     }
 }
 

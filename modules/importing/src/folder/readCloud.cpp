@@ -189,7 +189,7 @@ Scan scanByTimes(const RawCloud& cloud)
         const LidarPoint& p = cloud.points[i];
         if (is_near(cloud.times[i]))
             builder.add(p.position, p.intensity, timeOf(cloud.times[i]), p.ring);
-        else
+        else if (p.position.allFinite())  // rows of NaN may be without a time as well
             bad++;
     }
     if (static_cast<double>(bad) > kWorstBadShare * static_cast<double>(cloud.points.size()))
