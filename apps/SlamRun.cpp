@@ -167,12 +167,13 @@ void SlamRun::printResults(const SessionOutcome& o, const std::vector<std::strin
     if (o.live) out << linesOf(*o.live);
     out << format(
         "%zu submaps, %zu loops%s\n"
-        "results in %s: trajectory.tum, map.ply, map.ot, map.bt, %s%smetrics.json\n",
+        "results in %s: trajectory.tum, map.ply, %smap.ot, map.bt, %s%smetrics.json\n",
         o.submaps, o.loops,
         o.undistorted_again ? " closed, every point undistorted again"
         : o.corrected       ? " closed"
         : o.loops > 0       ? " seen; the odometry has no gap to close"
                             : "",
-        options_.output.c_str(), pictures ? "snapshot_*.png, " : "", page ? "report.html, " : "");
+        options_.output.c_str(), session_.method.map_export.las ? "map.las, " : "",
+        pictures ? "snapshot_*.png, " : "", page ? "report.html, " : "");
 }
 }  // namespace taut

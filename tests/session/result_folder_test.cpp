@@ -48,7 +48,7 @@ TEST(AResultFolder, IsMadeAndMadeAnew)
 TEST(AResultFolder, KeepsFilesThatTautDidNotWrite)
 {
     const TemporaryFolder folder;
-    for (const char* name : {"map.ply", "config.yaml", "metrics.json"})
+    for (const char* name : {"map.ply", "map.las", "config.yaml", "metrics.json"})
     {
         const std::string out = folder / (std::string(name) + ".d");
         fs::create_directory(out);

@@ -14,6 +14,7 @@ constexpr std::size_t kMaxSample = 1'000'000;
 void MapExportConfig::declare(ConfigSection& s)
 {
     s.key("point_spacing", point_spacing, kPositive, "m, one point of map.ply a voxel");
+    s.key("las", las, "write map.las, for surveyors' programs");
     s.key("key_distance", key_distance, kPositive, "m between key scans of the occupancy map, or");
     s.key("key_angle", key_angle, kPositive, "rad, or");
     s.key("key_time", key_time, kPositive, "s");
@@ -29,12 +30,14 @@ MapExport::MapExport(const MapExportConfig& config, const std::string& folder)
       spacing_(config.point_spacing),
       occupancy_(config.occupancy)
 {
+    if (config.las) las_.emplace(folder + "/map.las");
 }
 
-void MapExport::addPoint(const Vector3d& p, float intensity)
+void MapExport::addPoint(const Vector3d& p, float intensity, Time t)
 {
     if (!voxels_.insert(voxelKey(p, 1 / spacing_))) return;
     ply_.append({p.cast<float>(), intensity});
+    if (las_) las_->append({p, intensity, t});
     sample_.add(p.cast<float>());
 }
 
@@ -47,8 +50,7 @@ bool MapExport::isKey(const NavState& state) const
 }
 
 void MapExport::add(
-    const NavState& state, const std::vector<Vector3d>& points_world,
-    const std::vector<LidarPoint>& raw)
+    const NavState& state, const std::vector<Vector3d>& points_world, const Scan& raw)
 {
     if (voxels_.size() > kMaxVoxels)
     {
@@ -58,10 +60,13 @@ void MapExport::add(
     scans_.emplace_back(state.t, ply_.size());
     for (std::size_t i = 0; i < points_world.size(); i++)
     {
-        const float intensity = i < raw.size() ? raw[i].intensity : 0;
-        addPoint(points_world[i], std::isfinite(intensity) ? intensity : 0);
+        const bool known = i < raw.points.size();
+        const float intensity = known ? raw.points[i].intensity : 0;
+        const Time t = known ? raw.timeOf(raw.points[i]) : state.t;
+        addPoint(points_world[i], std::isfinite(intensity) ? intensity : 0, t);
     }
     ply_.flush();
+    if (las_) las_->flush();
     if (points_world.empty() || !isKey(state)) return;
     last_key_ = state;
     key_scans_++;
@@ -75,6 +80,16 @@ void MapExport::add(
 void MapExport::finish(const WarningSink& warn)
 {
     ply_.close();
+    if (las_)
+    {
+        las_->close();
+        if (las_->size() < ply_.size() && warn)
+            warn(
+                {0, "las_range",
+                 std::to_string(ply_.size() - las_->size()) +
+                     " points of map.ply are not in map.las: they are more than 2147 km from the "
+                     "origin, or more than the format counts"});
+    }
     OccupancyMap& map = occupancy_.finish(warn);
     occupancy_resolution_ = map.resolution();
     map.writeOt(folder_ + "/map.ot");
@@ -85,6 +100,7 @@ void MapExport::moveTo(const std::string& folder)
 {
     for (const char* name : {"/map.ply", "/map.ot", "/map.bt"})
         std::filesystem::rename(folder_ + name, folder + name);
+    if (las_) std::filesystem::rename(folder_ + "/map.las", folder + "/map.las");
     folder_ = folder;
 }
 
@@ -105,10 +121,13 @@ std::size_t MapExport::takeOut(const std::function<bool(const Vector3d&)>& gone)
     const std::string whole = folder_ + "/map.ply", part = whole + ".part";
     PlyReader points(whole);
     PlyPointWriter stays(part), moved(folder_ + "/map_moved.ply");
+    std::vector<bool> las_keeps;  // of each point in map.las
     for (std::vector<double> row; points.next(row);)
     {
         const Vector3d p(row[0], row[1], row[2]);
-        (gone(p) ? moved : stays).append({p.cast<float>(), static_cast<float>(row[3])});
+        const bool left = gone(p);
+        (left ? moved : stays).append({p.cast<float>(), static_cast<float>(row[3])});
+        if (las_ && LasPointWriter::fits(p.cast<float>())) las_keeps.push_back(!left);
     }
     stays.close();
     moved.close();
@@ -120,6 +139,8 @@ std::size_t MapExport::takeOut(const std::function<bool(const Vector3d&)>& gone)
         return 0;
     }
     std::filesystem::rename(part, whole);
+    if (las_)
+        LasPointWriter::filter(folder_ + "/map.las", [&](std::size_t i) { return las_keeps[i]; });
     sample_.removeIf([&](const Eigen::Vector3f& p) { return gone(p.cast<double>()); });
     return taken_out_;
 }

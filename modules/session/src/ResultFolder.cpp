@@ -21,6 +21,7 @@ constexpr const char* kResults[] = {
     "timing.csv",
     "undistorted.points",
     "map.ply",
+    "map.las",
     "map_moved.ply",
     "map.ot",
     "map.bt",

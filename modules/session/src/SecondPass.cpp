@@ -37,7 +37,7 @@ bool undistortAgain(
         [&]() -> std::optional<SweepRecord>
         { return next < records.size() ? std::optional(records[next++]) : std::nullopt; },
         [&](const Sweep& sweep)
-        { map.add(sweep.end, sweep.undistorted(sweep.begin, sweep.end), sweep.scan.points); });
+        { map.add(sweep.end, sweep.undistorted(sweep.begin, sweep.end), sweep.scan); });
     while (std::optional<Measurement> m = log.next())
     {
         replay.add(std::move(*m));

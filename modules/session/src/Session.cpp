@@ -171,7 +171,7 @@ void Session::write(const Event& event)
         if (!config_.method.refined)
         {
             path_->add({x.t, x.T_world_imu});
-            map_->add(x, result.points, result.sweep.scan.points);
+            map_->add(x, result.points, result.sweep.scan);
         }
     }
     else if (const auto* refined = std::get_if<Refined>(&event))
@@ -198,7 +198,7 @@ void Session::takeRefined(const Refined& refined)
     if (for_files)
     {
         path_->add({x.t, x.T_world_imu});
-        map_->add(x, points, refined.sweep.scan.points);
+        map_->add(x, points, refined.sweep.scan);
     }
     if (!mapper_) return;
     if (records_.empty())

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "taut/core/Scan.h"
 #include "taut/core/ThinnedSample.h"
 #include "taut/core/VoxelSet.h"
+#include "taut/files/LasFile.h"
 #include "taut/files/PlyFile.h"
 #include "taut/map/OccupancyWorker.h"
 
@@ -19,6 +21,7 @@ struct MapExportConfig
     /** [m] one point of map.ply a voxel of this size; where 20 million are full, new points are
      * thinned twice as coarsely, again and again. */
     double point_spacing = 0.05;
+    bool las = false;           //!< write map.las, too: the points of map.ply with their times
     double key_distance = 1.0;  //!< [m] or
     double key_angle = 0.35;    //!< [rad] or
     double key_time = 5.0;      //!< [s] from one key scan of the occupancy map to the next
@@ -28,19 +31,21 @@ struct MapExportConfig
     void declare(ConfigSection& section);
 };
 
-/** Writes the map while the estimation runs: map.ply point by point, and the occupancy octree from
- * key scans in a thread of its own. Keeps a bounded sample of the points for the pictures. */
+/** Writes the map while the estimation runs: map.ply point by point, if asked for map.las with the
+ * same points in the same order, and the occupancy octree from key scans in a thread of its own.
+ * Keeps a bounded sample of the points for the pictures. */
 class MapExport
 {
  public:
     MapExport(const MapExportConfig& config, const std::string& folder);
 
-    /** `raw`: the same points as they were measured, for their intensity; empty: not known. */
+    /** `raw`: the same points as they were measured, for their intensities and times; without
+     * points: not known, and the time of the points is that of the state. */
     void add(
-        const NavState& state, const std::vector<Vector3d>& points_world,
-        const std::vector<LidarPoint>& raw = {});
+        const NavState& state, const std::vector<Vector3d>& points_world, const Scan& raw = {});
 
-    /** Completes map.ply, map.ot and map.bt. */
+    /** Completes map.ply, map.las, map.ot and map.bt. Warning `las_range`: points that a LAS file
+     * cannot hold. */
     void finish(const WarningSink& warn);
 
     /** After finish(): moves the files to another folder of the same file system. */
@@ -51,7 +56,8 @@ class MapExport
     void forPoints(const std::function<void(Time, const Vector3d&)>& visit) const;
 
     /** After finish(): moves the points that `gone` tells (world frame) from map.ply to
-     * map_moved.ply, which is there only if it has points. Gives their number. */
+     * map_moved.ply, which is there only if it has points. map.las keeps none of them. Gives their
+     * number. */
     std::size_t takeOut(const std::function<bool(const Vector3d&)>& gone);
 
     /** An even sample of the points of map.ply. */
@@ -61,12 +67,13 @@ class MapExport
     double occupancyResolution() const { return occupancy_resolution_; }
 
  private:
-    void addPoint(const Vector3d& p, float intensity);
+    void addPoint(const Vector3d& p, float intensity, Time t);
     bool isKey(const NavState& state) const;
 
     MapExportConfig config_;
     std::string folder_;
     PlyPointWriter ply_;
+    std::optional<LasPointWriter> las_;
     VoxelSet voxels_;
     ThinnedSample<Eigen::Vector3f> sample_;
     double spacing_;  // [m] of new points: grows where the map is huge, so that memory does not
