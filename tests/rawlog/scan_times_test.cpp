@@ -66,7 +66,7 @@ TEST_F(ARawlogWithoutTimes, GetsThemFromTheAzimuthOfItsPoints)
     }
 }
 
-TEST_F(ARawlogWithoutTimes, IsTakenAsUndistortedWhereNoGyroTellsOtherwise)
+TEST_F(ARawlogWithoutTimes, IsTakenAsUndistortedWithoutAnImu)
 {
     write({});
     const auto scans = read(ScanTimes::Auto);

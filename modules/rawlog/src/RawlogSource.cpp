@@ -457,6 +457,7 @@ std::optional<Measurement> RawlogSource::Impl::convertLidar(
 void RawlogSource::Impl::learnTimes(Time t)
 {
     completer.emplace(config.scan_times);
+    bool any_sample = false;
     if (config.scan_times != ScanTimes::None) try
         {
             RawlogConfig again = config;
@@ -465,6 +466,7 @@ void RawlogSource::Impl::learnTimes(Time t)
             while (auto measurement = source.next())
             {
                 auto* scan = std::get_if<Scan>(&*measurement);
+                any_sample |= scan == nullptr;
                 if (scan == nullptr)
                     completer->learn(std::get<ImuSample>(*measurement));
                 else if (!completer->learn(std::move(*scan)))
@@ -476,10 +478,9 @@ void RawlogSource::Impl::learnTimes(Time t)
             // Whatever ends the reading will do so here too, and is told then.
         }
     completer->finishLearning();
-    // A rawlog cannot say that its sweeps are undistorted; where a gyro turned as they did, they
-    // are not.
-    if (config.scan_times == ScanTimes::Auto && !completer->stampIsEnd())
-        completer.emplace(ScanTimes::None);
+    // A rawlog cannot say that its sweeps are undistorted. Without an IMU they probably are, as
+    // those of KITTI's odometry.
+    if (config.scan_times == ScanTimes::Auto && !any_sample) completer.emplace(ScanTimes::None);
     const bool is_end = completer->stampIsEnd().value_or(false);
     completer->setStampIsEnd(is_end);
     const auto& found = completer->findings();
