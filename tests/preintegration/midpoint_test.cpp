@@ -84,7 +84,8 @@ TEST(MidpointPreintegrator, KeepsABodyAtRest)
     const MotionDelta& start = chain.knots.back().delta;
     const double d = toSeconds(kSweep);
     const Vector3d g = body.T_world_imu.R.transpose() * kGravityWorld;
-    EXPECT_LT((start.alpha - 0.5 * g * d * d).norm(), 1e-12);  // the sign of gravity: docs/equations.md
+    EXPECT_LT(
+        (start.alpha - 0.5 * g * d * d).norm(), 1e-12);  // the sign of gravity: docs/equations.md
     EXPECT_LT((start.beta + g * d).norm(), 1e-12);
     EXPECT_LT((start.gamma - Matrix3d::Identity()).norm(), 1e-12);
 

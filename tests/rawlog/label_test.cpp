@@ -43,13 +43,11 @@ class SensorLabels : public RawlogTest
 TEST_F(SensorLabels, TwoOfAKindWithoutAChoiceIsAnErrorThatNamesThemAndTheOption)
 {
     config_.imu_label = "IMU_A";
-    EXPECT_THAT(
-        error(), AllOf(HasSubstr("'FRONT'"), HasSubstr("'REAR'"), HasSubstr("--lidar")));
+    EXPECT_THAT(error(), AllOf(HasSubstr("'FRONT'"), HasSubstr("'REAR'"), HasSubstr("--lidar")));
     config_ = {};
     config_.path = path("two.rawlog");
     config_.lidar_label = "REAR";
-    EXPECT_THAT(
-        error(), AllOf(HasSubstr("'IMU_A'"), HasSubstr("'IMU_B'"), HasSubstr("--imu")));
+    EXPECT_THAT(error(), AllOf(HasSubstr("'IMU_A'"), HasSubstr("'IMU_B'"), HasSubstr("--imu")));
 }
 
 TEST_F(SensorLabels, AnExpressionChoosesByTheWholeLabel)

@@ -24,7 +24,7 @@ inline Eigen::MatrixXd numericJacobian(
 /** Reproducible random vectors. */
 class Random
 {
-   public:
+ public:
     explicit Random(unsigned seed) : engine_(seed) {}
     double uniform(double lo, double hi)
     {
@@ -38,7 +38,7 @@ class Random
         return v;
     }
 
-   private:
+ private:
     std::mt19937_64 engine_;
 };
 }  // namespace taut::test

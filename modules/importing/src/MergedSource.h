@@ -19,7 +19,7 @@ struct SensorStreams
     std::vector<std::string> findings;
     bool undistorted = false;  //!< somebody undistorted the scans, as is known
     std::function<std::vector<std::string>()> later_findings;  //!< complete at the end; or empty
-    bool tells_pose = true;  //!< as ItemSource::tellsPose()
+    bool tells_pose = true;                                    //!< as ItemSource::tellsPose()
 };
 
 /** Brings the streams of two sensors into the order of time: a scan when it has ended, as a

@@ -90,7 +90,8 @@ class ItemEntries : public EntrySource
 
 std::unique_ptr<EntrySource> openEntries(const RawlogConfig& config, const WarningSink& warn)
 {
-    if (!config.open) return std::make_unique<ObservationReader>(config.path, config.wait_for_growth);
+    if (!config.open)
+        return std::make_unique<ObservationReader>(config.path, config.wait_for_growth);
     return std::make_unique<ItemEntries>(config.path, config.open(warn));
 }
 }  // namespace taut

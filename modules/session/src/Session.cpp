@@ -40,10 +40,9 @@ double secondsSince(std::chrono::steady_clock::time_point begin)
 }
 
 /** Warnings which say that a part of the input was not used, or not as it is. */
-constexpr const char* kUnused[] = {
-    "late_imu",    "imu_late",      "imu_silent", "imu_not_found",
-    "lidar_ended", "place_unknown", "clock_back", "extrinsic_rotation",
-    "too_slow"};
+constexpr const char* kUnused[] = {"late_imu",      "imu_late",           "imu_silent",
+                                   "imu_not_found", "lidar_ended",        "place_unknown",
+                                   "clock_back",    "extrinsic_rotation", "too_slow"};
 
 /** Scans whose points wait for the mapper in memory, in a live run. */
 constexpr std::size_t kMostBeside = 200;

@@ -25,7 +25,7 @@ struct EstimationConfig
 {
     Undistortion undistortion = Undistortion::Bridge;
     PreviousState previous_state = PreviousState::Released;
-    int max_iterations = 8;  //!< look-ups of correspondences
+    int max_iterations = 8;               //!< look-ups of correspondences
     int max_iterations_without_imu = 30;  //!< the same where the rate is a state
     /** Sigmas, whitened step after which matches are not renewed. Smaller ones change nothing that
      * can be measured, and cost a sixth of the time. */
