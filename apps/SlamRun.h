@@ -31,8 +31,8 @@ class SlamRun
     /** Of the log at `path`, with the sensors and the rig of the options. */
     RawlogConfig rawlog(const std::string& path) const;
 
-    /** Makes the folder ready; `inputs` are not written over, and folders among them not used.
-     * Throws UsageError. */
+    /** Makes the folder ready; `inputs` are not written over, nor are results put into a folder
+     * among them. Throws UsageError. */
     void makeFolder(const std::vector<std::string>& inputs) const;
 
     /** The events of the session go here. */

@@ -7,9 +7,11 @@ namespace taut
 /** Standard deviations of the white noise during one step of the chain, as densities. */
 struct StepNoise
 {
-    double gyro = 0;         //!< [rad/s/sqrt(Hz)]
-    double accel = 0;        //!< [m/s^2/sqrt(Hz)]
-    double gyro_hidden = 0;  //!< share of `gyro` for what a reading at the limit hides, the same
+    double gyro = 0;   //!< [rad/s/sqrt(Hz)]
+    double accel = 0;  //!< [m/s^2/sqrt(Hz)]
+    /** The part of `gyro` that stands for what readings at the limit hide, as a density of its own.
+     */
+    double gyro_hidden = 0;
 };
 
 /** Adds the knot of an earlier sample to the chain and propagates the covariance of
